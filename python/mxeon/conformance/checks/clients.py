@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client's bindings other than the material: lights, an environment, shadows, and blending.
+"""Checks what a client binds to a shader besides the material, such as lights and shadow maps.
 
 A frame is a picture drawn by the whole generated main(), with point and spot lights, a shadow map,
-ambient occlusion and transparency. A frame is in one state per axis of AXES; any two states of
-different axes occur together in some frame.
+ambient occlusion and transparency. A frame has one state, such as "a point light", for each axis of
+AXES, such as "lights". Any two states of different axes occur together in some frame.
 
-Expected lights, shadows and alpha follow MaterialX's text, since no specification describes them:
-at distance d a light is divided by (1 + d)^decay, a spot light falls off smoothly between two
-cosines, and shadows use Chebyshev's bound.
+No specification describes lights, shadows and alpha, so the expected values follow MaterialX's
+shader code. A light at distance d is divided by (1 + d)^decay, a spot light falls off smoothly
+between two cosines, and shadows use Chebyshev's bound.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -32,11 +32,12 @@ if TYPE_CHECKING:  # the import loads MaterialX
 
 SIZE = 16  # width and height of a frame in pixels
 WHITE_MAP, WARM_MAP = (np.full((1, 1, 3), each, np.float32) for each in (1.0, (0.75, 0.5, 0.25)))
-# Paths of the document's inputs, with the names that `material` uses.
+# Paths of the document's inputs, and the names by which the function `material` sets the inputs.
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
 LEAST_VARIANCE = 1e-5  # smallest variance of depths in a shadow map
-TRANSPARENT = 0.3333  # weight of each channel of the transparency in alpha
-# A shadow matrix that maps the sphere's depths into [0.2, 0.7]; w is deliberately not 1.
+TRANSPARENT = 0.3333  # weight of each color channel when a transparency becomes alpha
+# A shadow matrix that maps the sphere's depths into [0.2, 0.7]. The homogeneous coordinate w is
+# 1.5, so shaders must divide by w.
 SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0.0, 0.0, 0.0, 1.5)
 
 
@@ -56,7 +57,7 @@ def same(frame: Frame) -> Frame:
 
 
 def premultiplied(frame: Frame) -> Frame:
-    """A frame without environment, with premultiplied mixes, new in MaterialX 1.39.5."""
+    """A frame without an environment; since MaterialX 1.39.5, mixes scale the weights of lobes."""
     from mxeon.shaders.options import offers
 
     methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
@@ -77,8 +78,8 @@ BULB = Lamp(type=2, position=(1.0, 2.0, 1.5), color=(0.5, 1.0, 0.2), intensity=2
 # fmt: off
 SPOT = Lamp(type=3, position=(0.0, 1.0, 2.5), direction=(0.0, -0.6, -0.8), color=(0.2, 0.5, 1.0),
             intensity=30.0, inner_angle=0.95, outer_angle=0.8, decay_rate=1.5)
-# States by axis. Other checks use the first state of each axis. States with the same words before a
-# colon are also diagnosed as a group.
+# States of a frame by axis. The first state of an axis is the default, which other checks use.
+# States with the same words before a colon form a group that a diagnosis can name.
 AXES: dict[str, dict[str, Build]] = {
     "methods": {"the default methods": same, "premultiplied mixes without an environment": premultiplied},
     "lights": {
@@ -117,7 +118,7 @@ AXES: dict[str, dict[str, Build]] = {
 
 @lru_cache(maxsize=1)
 def frames() -> tuple[tuple[set[str], Frame], ...]:
-    """All frames, each with the names of its states, sorted by program."""
+    """All frames, each with the names of the frame's states, in the order of their shaders."""
     rows = []
     for states in covering(tuple(map(tuple, AXES.values()))):
         frame = Frame()
@@ -128,7 +129,7 @@ def frames() -> tuple[tuple[set[str], Frame], ...]:
 
 
 def lamp_light(lamp: Lamp, position: Array) -> tuple[Array, Array]:
-    """Direction to a light, and the irradiance of a surface facing it, at positions (N, 3)."""
+    """Direction to a light, and irradiance of a surface facing the light, at positions (N, 3)."""
     direction = np.broadcast_to(np.negative(lamp.direction), position.shape)
     irradiance = np.broadcast_to(np.multiply(lamp.color, lamp.intensity), position.shape)
     if lamp.type == 1:
@@ -145,7 +146,7 @@ def lamp_light(lamp: Lamp, position: Array) -> tuple[Array, Array]:
 
 
 def shadow(client: Client, position: Array) -> Array:
-    """Share of the first light that reaches positions, (N, 1)."""
+    """Fraction of the first light that shadows leave at each position, (N, 1)."""
     x = np.insert(position, 3, 1.0, axis=1) @ np.reshape(client.shadow, (4, 4))
     mean, square = client.moments
     behind = np.maximum(0.5 + 0.5 * x[:, 2:3] / x[:, 3:] - mean, 0.0)
@@ -154,7 +155,7 @@ def shadow(client: Client, position: Array) -> Array:
 
 
 def light(client: Client, methods: Methods, normal: Array) -> Array:
-    """Light of a white, matte sphere of radius 1, whose positions equal its normals, (N, 3)."""
+    """Radiance of a white, matte unit sphere, (N, 3); each position equals the normal there."""
     total = np.zeros_like(normal)
     for number, lamp in enumerate(client.lamps):
         direction, irradiance = lamp_light(lamp, normal)
@@ -167,7 +168,10 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
 
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
-    """Names of each frame's states, with measured and expected colors, then alphas."""
+    """Comparisons of colors, then of alphas, for each frame, with the names of the frame's states.
+
+    The states include "alpha" if a comparison is of alphas.
+    """
     from mxeon.hosts.raster import ALPHA_THRESHOLD  # loads MaterialX
     from mxeon.shaders.generators import CLIENT_OPTIONS
 
@@ -189,7 +193,7 @@ def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
         front, back = share * front, (1.0 - share) * back
         color = (front * FRONT + back * BACK) * light(client, methods.over(GENERATED), normal)
         opacity = 1.0 - 3.0 * TRANSPARENT * (1.0 - front - back)
-        opacity *= opacity >= ALPHA_THRESHOLD  # other pixels are discarded
+        opacity *= opacity >= ALPHA_THRESHOLD  # pixels below the threshold are discarded
         for alpha, expected in ((False, color), (True, np.full_like(color, opacity))):
             scene = Scene("client", size=SIZE, client=replace(client, alpha=alpha))
             measured = case.host.picture(shader, scene)[points.mask].astype(np.float64)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of lobes (values, albedos, frames, inputs, edges, energy), combined lobes, and hair."""
+"""Checks of single lobes (values, albedos, frames, inputs, energy), combined lobes, and hair."""
 
 import math
 from collections.abc import Iterator
@@ -36,10 +36,12 @@ from mxeon.models.nodes.combinations import FACTOR
 from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
-LEAST_LIGHT = 0.01  # pairs with less light in a uniform environment skip the uneven environment
-# Texels have sides of pi / 128 and are read at their centers; engines filter with 8-bit weights.
+LEAST_LIGHT = 0.01  # smallest albedo by which light of an uneven environment is divided
+# Error of a lookup direction in radians. Texels of the environment map have sides of pi / 128 and
+# are read at texel centers, and engines filter textures with 8-bit weights.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
-# Largest error of an engine's arc sine: llvmpipe's. Other engines are ten times as accurate.
+# Largest error of an engine's arc sine, in radians, measured for the software rasterizer llvmpipe.
+# Other engines are ten times as accurate.
 ARC_SINE = 4e-4
 SURROUNDINGS = sum_in(
     Quantity.IRRADIANCE,
@@ -52,31 +54,34 @@ OPAQUE = sum_in(Quantity.THROUGHPUT, roundings(1, "of 1 - weight"))
 
 
 def of_model(*names: str) -> Specs:
-    """Specs with one of these diffuse models, even if the lobe is below other lobes."""
+    """Specs whose diffuse model is among `names`, including diffuse lobes below other lobes."""
     return family(DiffuseModelSpec, lambda spec: spec.model in names)
 
 
-# Sets of nodes, for the checks in the table below.
+# Sets of nodes to which checks of the table ROWS apply.
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
 CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # nodes that transmit and reflect
 DARK = TRANSMITTING - CLEAR  # nodes that transmit but do not reflect
-# Nodes that pass all light if transmission is rendered as opacity.
+# Nodes without a tint, which pass all light if transmission is rendered as opacity.
 UNTINTED = DARK - family(LobeSpec, lambda spec: "tint" in colored(spec))
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
 FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)
-PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # single lobes of pbrlib
-LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # lobes that pass 1 - E to a base
+PLAIN = family(PbrSpec) - COMBINED - FILMS - TRANSMITTING  # single lobes of MaterialX's pbrlib
+LAYERS = PLAIN & family(PbrSpec, lambda spec: spec.row.layerable)  # lobes that can cover a base
 RECIPROCAL = PLAIN & family(PbrSpec, lambda spec: spec.row.reciprocal)
 LAMBERT, BURLEY = of_model("lambert"), of_model("burley")
 LOBES = PLAIN | BURLEY | of_model("burley_lambert")
 EON = of_model("eon", "eon_fitted")
 MODES = of_model("eon", "eon_fitted", "qon")  # modes of a rough diffuse node
 ROUGH = MODES | of_model("fon")
-VALUED = LOBES | FILMS | ROUGH  # single lobes of nodes and renderers
+VALUED = LOBES | FILMS | ROUGH  # single lobes of MaterialX's nodes and of renderers
 
 
 def shows_exactly(spec: Spec, host: str) -> bool:
-    """Whether a host evaluates exact directions, even grazing; closures lack films of index 0."""
+    """Whether a host evaluates exact directions, including grazing directions.
+
+    Hosts that evaluate closures are excluded for films, because closures have no film of IOR 0.
+    """
     inexact = {"rendered", "pictures"}
     if Ability.FILM in spec.requires:
         inexact.add("closures")
@@ -84,10 +89,10 @@ def shows_exactly(spec: Spec, host: str) -> bool:
 
 
 def finds_albedo(spec: Spec, methods: Methods) -> bool:
-    """Whether the environment branch returns a known albedo.
+    """Whether the environment branch of a shader returns an albedo that can be compared.
 
-    In a prefiltered environment, MaterialX's fit is inaccurate for films and surface shaders, and
-    so are sums of 64 samples and eonlib's own lookup for microfacets.
+    In a prefiltered environment, MaterialX's fit is too inaccurate for films and surface shaders.
+    For microfacets, sums of 64 samples and eonlib's own lookup are too inaccurate.
     """
     if methods.environment != "prefilter":
         return methods.environment == "fis"
@@ -118,7 +123,7 @@ def surroundings(case: Case) -> Compared:
         batch = batch.altered(color=samples.WHITE)
     uniform = case.albedo(batch)
     bright = uniform.min(axis=1) > LEAST_LIGHT
-    if bright.any():  # if all pairs are dark, the uniform environment is wrong
+    if bright.any():  # skip dark pairs, unless all pairs are wrongly dark
         batch, uniform = batch.where(bright), uniform[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = case.albedo(batch, samples.sky_map()) / uniform
@@ -154,16 +159,19 @@ def color_candidates(case: Case) -> tuple[Candidate, ...]:
 COLOR_SPACE = Comparison("color_space", in_srgb, color_candidates)
 
 
-# Pairs of output and branch that are 0 for an opaque node of weight 1.
+# Pairs of an output and a branch for which an opaque node of weight 1 must return 0.
 ZEROS = (*product(["throughput"], BRANCHES), *product(["response"], ["transmission", "emission"]))
 
 
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
-    """Outputs of an opaque node: throughputs must be 1 - weight, others 0. Hair has weight 1."""
+    """Outputs of an opaque node: a throughput must be 1 - weight, any other output must be 0.
+
+    Hair has no input `weight`; the weight of hair counts as 1.
+    """
     for batch in case.few:
         weight = np.array(np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo)))
         if "weight" in batch.inputs:
-            weight[0] = 2.0  # weights above 1 count as opaque
+            weight[0] = 2.0  # a weight above 1 must act like a weight of 1
             batch = batch.altered(weight=weight)
         values = case.evaluating.evaluate(case.inputs(batch), branch, output)
         passed = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
@@ -172,11 +180,11 @@ def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
 
 
 def reciprocity(case: Case) -> Iterator[Compared]:
-    """f(wo, wi) compared with f(wi, wo), each multiplied by both cosines."""
+    """BSDF values f(wo, wi) compared with f(wi, wo), each multiplied by both cosines."""
     for batch in case.few:
         side = -1.0 if np.all(batch.wi[:, 2] <= 0.0) else 1.0  # -1 if all light is from below
         swapped = replace(batch, wo=side * batch.wi, wi=side * batch.wo)
-        with np.errstate(invalid="ignore"):  # inf x 0 is NaN, which `absolute` detects
+        with np.errstate(invalid="ignore"):  # infinity times 0 is NaN, which counts as an error
             forward = case.direct(batch) * batch.wo[:, 2:]
             backward = case.direct(swapped) * np.abs(batch.wi[:, 2:])
         yield Compared(batch, forward, backward)
@@ -202,7 +210,7 @@ def denser(case: Case) -> Iterator[Compared]:
 
 
 def throughput(case: Case, batch: Batch) -> Compared:
-    """Throughput at full weight, compared with 1 - E."""
+    """Throughput at weight 1, compared with 1 minus the directional albedo."""
     full = batch.altered(weight=1.0)
     return Compared(full, case.throughput(full, "direct"), case.expected_throughput(full))
 
@@ -211,7 +219,8 @@ def layer(case: Case) -> Compared:
     batch, weights = case.backend.integrated
     views, albedo = summed(case, uncolored(batch), weights)
     total = albedo + case.throughput(views, "direct")
-    # No throughput can compensate for equations whose values integrate to more than the albedo.
+    # Skip materials whose model values integrate to more than the model's albedo, because then the
+    # sum of integral and throughput exceeds 1.
     most = case.lobe.albedo(batch.where(np.arange(len(weights)) * weights.shape[1])) + 1e-9
     sound = np.asarray((case.backend.integrals <= most).all(axis=1))
     return Compared(views, total, np.ones_like(total)).where(sound)
@@ -229,7 +238,7 @@ def energy(case: Case) -> Compared:
 
 
 def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
-    """Views of materials, and their albedos, (N, 3), summed over many light directions."""
+    """Views, and albedos for these views, (N, 3), as weighted sums over many light directions."""
     count, nodes = weights.shape
     values = case.direct(batch).reshape(count, nodes, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
@@ -267,7 +276,7 @@ def in_region(key: str, case: Case) -> Compared:
 
 
 def explain_region(key: str, case: Case) -> Diagnosis:
-    equal = set(FORMS) - {REGIONS[key].form, TILTED}  # forms that equal the model in this region
+    equal = set(FORMS) - {REGIONS[key].form, TILTED}  # variants equal to the model here
     candidates = [each for each in case.valued.value_candidates if each.title not in equal]
     compared = region_values(key, case)
     brightest = min(float(compared.expected.max()), 1.0)
@@ -278,12 +287,12 @@ def explain_region(key: str, case: Case) -> Diagnosis:
 
 # --- inputs outside the ranges of the other checks, if hosts pass them on -------------------------
 
-LEAST_WEIGHT = 0.3  # smallest weight and occlusion, so that effects stay visible
+LEAST_WEIGHT = 0.3  # smallest weight and occlusion, so that errors stay visible
 TOLERANCES = single(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
 
 
 def quantities(case: Case, batch: Batch, clamped: Batch) -> Iterator[tuple[str, Compared]]:
-    """Values, albedos and throughputs by name, compared with the model's for clamped inputs."""
+    """Value, albedo and throughput by name, compared with the model's result for clamped inputs."""
     yield "value", Compared(batch, case.direct(batch), case.expected(clamped))
     yield "albedo", Compared(batch, case.albedo(batch), case.expected_albedo(clamped))
     if LAYERS(case.spec):
@@ -292,14 +301,16 @@ def quantities(case: Case, batch: Batch, clamped: Batch) -> Iterator[tuple[str, 
 
 
 def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
-    """Quantity, input, value and comparison of a few pairs for each value outside a usual range.
+    """Compare a few pairs for each tested value outside the usual range of an input.
 
-    Quantities are divided by their tolerances. Quantities that fail for usual inputs are skipped.
+    A comparison comes with the names of the quantity and the input, and with the input's value. All
+    results are divided by the quantity's tolerance. A quantity that fails for usual inputs is
+    skipped.
     """
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, visible = np.arange(len(views.wo))[:, np.newaxis], {}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peak of microfacets
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets' peak
     for name in {"weight", "occlusion"} & views.inputs.keys():
         visible[name] = np.maximum(views.inputs[name], LEAST_WEIGHT)
     views = replace(views, wo=wo, wi=wi).altered(**visible)
@@ -319,7 +330,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
                 batch.altered(**{port.name: np.full_like(batch.inputs[port.name], number)})
                 for number in (value, float(np.clip(value, *port.ends)))
             )
-            # MaterialX's sum over an environment does not clamp a curve below 0.
+            # Skip negative Fresnel curves, which MaterialX's environment sum does not clamp to 0.
             known = ~np.broadcast_to(falls_below_0(clamped.inputs), len(batch.wo))
             for name, compared in quantities(case, beyond, clamped):
                 if name not in wrong:
@@ -347,7 +358,7 @@ CLAMPED = FACETS | COMBINED | family(HairSpec)  # nodes for which negative color
 
 
 def colored(spec: LobeSpec) -> list[str]:
-    """Names of color inputs that scale light: reflectances, tints, or a combination's factor."""
+    """Names of color inputs that scale light: reflectances, tints, or the factor of `multiply`."""
     prefixes = (FACTOR,) if COMBINED(spec) else ("color", "tint")
     colors = (each.name for each in spec.inputs if each.type == "color3")
     return [name for name in colors if name.startswith(prefixes)]
@@ -359,9 +370,10 @@ def unsigned(batch: Batch) -> Batch:
 
 
 def negative(case: Case) -> Iterator[Compared]:
-    """Light for a negative red, compared with red 0, or with the negated light for positive red.
+    """Compare light for a negative red with light for red 0, or with minus light for positive red.
 
-    EON's light is a rho + b rho^2 / (1 - rho (1 - <E>)); light for rho and rho / 2 gives a and b.
+    EON's light is a rho + b rho^2 / (1 - rho (1 - <E>)), where <E> is the average albedo of FON.
+    The coefficients a and b follow from the light for rho and the light for rho / 2.
     """
     quantities = [(case.backend.direct, case.direct)]
     if not family(HairSpec)(case.spec):  # MaterialX computes hair's albedo from unclamped tints
@@ -386,7 +398,7 @@ def negative(case: Case) -> Iterator[Compared]:
                 expected = light(whole) + red * (second * (least + most) - 2.0 * light(whole))
             else:
                 expected = light(whole) * (1.0 - 2.0 * red)
-            finite = np.asarray(np.isfinite(expected).all(axis=1))  # NaN fails other checks
+            finite = np.asarray(np.isfinite(expected).all(axis=1))  # other checks report NaN
             yield Compared(negated, measure(negated), expected).where(finite)
 
 
@@ -502,7 +514,7 @@ ROWS = (
     Check(key="combined_throughput",
           claim="Two combined lobes pass on what they do not scatter, as the layer equation requires.",
           applies=COMBINED,
-          # Negative throughputs count as 0, as in `layer`.
+          # Negative throughputs count as 0, because the node `layer` clamps throughputs to 0.
           measure=lambda case: (
               each._replace(measured=np.maximum(each.measured, 0.0)) for each in THROUGHPUT(case)),
           tolerance="throughput",

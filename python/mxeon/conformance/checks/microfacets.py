@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks specific to microfacet lobes: reflection, transmitted light, and thin films.
 
-F is the Fresnel reflectance, E_ss the albedo of single scattering by facets that reflect all light,
-and F_ss the average of F over the hemisphere. A compensated lobe has the value of single scattering
-times 1 + F_ss k, with k = (1 - E_ss) / E_ss.
+F is the Fresnel reflectance. E_ss is the albedo of single scattering by facets that reflect all
+light. F_ss is the average of F over the hemisphere. A lobe with compensation has the value of
+single scattering times 1 + F_ss k, with k = (1 - E_ss) / E_ss.
 """
 
 from collections.abc import Callable, Iterator
@@ -47,12 +47,12 @@ if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 PAIRS = 1 << 12  # number of pairs near the mirror direction
-RATIO_INDEX = 1.2  # smallest index of dielectrics in comparisons of ratios
-# The printed Schlick curve of this lobe is negative for some facets; without a clamp, its albedo is
-# -0.035.
+RATIO_INDEX = 1.2  # smallest IOR of dielectrics in comparisons of ratios
+# A lobe whose published Schlick curve is negative for some facets. Without a clamp, the albedo of
+# the lobe is -0.035.
 DIP: Values = {"color0": (0.06,) * 3, "color82": samples.BLACK, "color90": samples.WHITE}
 DIP = {**DIP, "weight": 1.0, "exponent": 5.0, "roughness": (0.2, 0.2)}
-LEAST_VALUE = 1e-3  # values and albedos up to 0.001 are not divided
+LEAST_VALUE = 1e-3  # values and albedos up to 0.001 are not used as divisors
 FACETS = lobes.PLAIN & lobes.FACETS  # microfacet lobes without film, transmission or combination
 isotropic = controls.with_batch(
     "the roughness is the same in both directions",
@@ -68,7 +68,10 @@ def lossless(case: Case) -> Compared:
 
 
 def shape(case: Case) -> Compared:
-    """Ratios of values for two lights, compared with single scattering: compensation cancels."""
+    """Ratios of values for two lights, compared with ratios for single scattering.
+
+    The factor that compensates for multiple scattering cancels in a ratio.
+    """
     batch, other = (
         raised(each.first(PAIRS), RATIO_INDEX, samples.LEAST_COLOR82)
         for each in case.backend.mirrored
@@ -91,10 +94,10 @@ def dark(case: Case) -> Compared:
 
 
 def raised(batch: Batch, index: float, color82: float) -> Batch:
-    """Raise dielectric indices and color82 to a minimum.
+    """Raise the IOR of dielectrics and color82 to a minimum.
 
-    In float32, the terms of a Fresnel curve cancel for indices near 1 and for deep dips at 82
-    degrees.
+    In float32, the terms of a Fresnel curve cancel if the IOR is near 1, or if the curve has a deep
+    dip at 82 degrees.
     """
     changes: dict[str, ArrayLike] = {}
     if np.ndim(batch.inputs.get("ior", 0.0)) == 1:
@@ -126,9 +129,10 @@ def anisotropy(case: Case) -> Compared:
 
 
 def reflected_sky(case: Case) -> Iterator[Compared]:
-    """Means of the sky, weighted by mirror lobes, then by retroreflective lobes for mirrored views.
+    """Mean of the sky weighted by a mirror lobe, and by a retroreflective lobe for a mirrored view.
 
-    Each mean is a quotient of two albedos, so factors of the lobe cancel.
+    A mean is the light of an uneven sky divided by the light of a uniform sky, so constant factors
+    of the lobe cancel.
     """
     spec = case.of(FacetSpec)
     views = case.backend.take(spec.stretched)[0].first(8)
@@ -145,18 +149,18 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
 
 
 def diagnose_sky(case: Case) -> Diagnosis:
-    """Find whether the mirror lobe is wrong, or only the retroreflective lobe."""
+    """Find out whether the mirror lobe is wrong, or only the retroreflective lobe."""
     if case.tolerance("sky").wrong(next(reflected_sky(case))).any():
         return defect("other_directions")
     return defect("retroreflective_environment")
 
 
 def anisotropic_albedo(case: Case) -> Iterator[Compared]:
-    """Albedos with the host's methods, and with the library's own environment lookups, if any.
+    """Albedos by the host's environment method, and by the library's own lookups if there are any.
 
-    For prefiltered environments, eonlib fits Fresnel curves: only mirrors are exact, and the fit is
-    too coarse for metals. An environment sampled by eonlib's own text must clamp Schlick curves
-    below 0.
+    In a prefiltered environment, eonlib fits Fresnel curves. The fit is exact for perfect mirrors,
+    but too coarse for metals. A sum over directions by eonlib's own code must clamp negative
+    Schlick curves to 0.
     """
     spec = case.of(FacetSpec)
     batch, albedo = case.backend.take(spec.stretched)
@@ -179,7 +183,7 @@ def anisotropic_albedo(case: Case) -> Iterator[Compared]:
 
 
 def own_lookups(case: Case) -> list[Methods]:
-    """Methods with the library's own environment lookups; empty if a client chose its methods."""
+    """Methods with the library's own environment lookups; empty if a client chose other methods."""
     from mxeon.shaders.library import environment_folders
 
     if case.host.active == GENERATED and not case.control and environment_folders(case.library):
@@ -208,12 +212,14 @@ def anisotropic_throughput(case: Case) -> Iterator[Compared]:
 
 # --- light that is transmitted, in the branch that looks up an environment ------------------------
 
-SUM_ERROR = 1e-3  # rms error of an engine's sum over the normals
+SUM_ERROR = 1e-3  # rms error of an engine's sum over facet normals
 LEAST_COSINE = 0.05  # smallest cosine of views of smooth surfaces
-CRITICAL = 0.05  # cosines closer to the critical cosine are skipped: there, F has an infinite slope
+# Smallest difference between a tested cosine and the cosine of the critical angle, where the slope
+# of F is infinite.
+CRITICAL = 0.05
 LEAST_PASSED = 0.01  # smallest transmitted light for which directions are measured
-# A refracted ray amplifies errors of the view's cosine by index^2 / cosine. The tolerance covers
-# amplification by 1000; the errors of rays with more are scaled down accordingly.
+# A refracted ray amplifies errors of the view's cosine by IOR^2 / cosine. The tolerance covers an
+# amplification by 1000. If a ray amplifies more, the error is divided by amplification / 1000.
 AMPLIFIED = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(
     roundings(4 * AMPLIFIED, "four of a cosine, times a slope of 1000")
@@ -224,12 +230,15 @@ ONE = np.ones((1, 3))
 
 
 def with_directions(spec: Spec, methods: Methods) -> bool:
-    """Whether the environment is summed over directions; prefiltered maps need one lookup."""
+    """Whether shaders sum the environment over directions instead of reading a prefiltered map."""
     return methods.environment == "fis"
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Test whether light is the mean of 1 - F, or this mean over G_1 (MaterialX); find NaN."""
+    """Test whether the light is the mean of 1 - F, or this mean divided by G_1 as in MaterialX.
+
+    The diagnosis also reports values that are not finite.
+    """
     compared, functions = list(transmitted(case)), case.of(TransmissionSpec).functions
 
     def mean(batch: Batch) -> Array:
@@ -253,11 +262,11 @@ def diagnose_transmitted(case: Case) -> Diagnosis:
 
 
 def transmitted(case: Case) -> Iterator[Compared]:
-    """Light of a uniform environment through the surface, which must lie between two limits.
+    """Compare light that passes from a uniform environment through the surface with two limits.
 
-    One limit is the light passed by the BTDF without compensation; the other is all light that is
-    not reflected, with tint and weight. The first limit is larger for some Schlick curves that the
-    shader overcompensates.
+    One limit is the light that the BTDF passes without compensation. The other limit is all light
+    that is not reflected. Tint and weight scale both limits. The BTDF's limit is the larger limit
+    for some Schlick curves whose reflection the shader overcompensates.
     """
     spec = case.of(TransmissionSpec)
     for batch in case.views:
@@ -265,9 +274,9 @@ def transmitted(case: Case) -> Iterator[Compared]:
 
 
 def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool) -> Compared:
-    """Transmitted light, compared with the nearest value within the limits of `transmitted`.
+    """Transmitted light, compared with the nearest value between the limits of `transmitted`.
 
-    If opacity replaces refraction, a lobe that only transmits passes its whole tint.
+    If opacity replaces refraction, a lobe in mode T passes all light, times the tint.
     """
     if opaque and not spec.reflects:
         return Compared(batch, measured, batch.strength * spec.functions.tint(batch.inputs))
@@ -286,11 +295,11 @@ CLIENT = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 
 
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
-    """Light with each client's methods, compared with the node's method-independent values."""
+    """Light by the methods of known clients, compared with light that no method may change."""
     transmits = TRANSMITTING(case.spec)
-    if transmits:  # Storm, then MaterialXView
+    if transmits:  # the methods of Storm, then those of MaterialXView
         clients = [Methods("prefilter", "opacity"), Methods("prefilter", "refraction")]
-        if CLEAR(case.spec):  # the shaders of these nodes also contain the code of mode T
+        if CLEAR(case.spec):  # shaders of mode RT also contain the code of mode T
             clients += own_lookups(case)
     else:
         clients = [Methods("prefilter", "refraction", "monteCarlo")]
@@ -315,9 +324,10 @@ def transmitted_to_client(case: Case, evaluate: Evaluate, methods: Methods) -> I
 
 
 def reflected_to_client(case: Case, evaluate: Evaluate, methods: Methods) -> Iterator[Compared]:
-    """Throughput, reflection of a white mirror, and reflection of a turned environment.
+    """Compare throughput, light from a white mirror, and reflection of a turned environment.
 
-    A white mirror reflects everything; with a table, the ratio of tabulated and exact albedo.
+    A white mirror reflects all light. If the shader reads albedos from a table, the reflected share
+    may also be the ratio of the tabulated albedo to the exact albedo.
     """
     for batch in case.views:
         views = case.inputs(batch)
@@ -342,10 +352,9 @@ def reflected_to_client(case: Case, evaluate: Evaluate, methods: Methods) -> Ite
 
 
 def tabulated(mu: Array, alpha: Array) -> Array:
-    """E_ss at the four nearest texels of MaterialX's table, over E_ss at (mu, alpha), (N, 4).
+    """E_ss at the four nearest texels of MaterialX's table, divided by E_ss at (mu, alpha), (N, 4).
 
-    In the first rows and columns, the table does not resolve the dip of E_ss to 0.89 near mu =
-    alpha.
+    The first rows and columns of the table do not resolve the dip of E_ss to 0.89 near mu = alpha.
     """
     sides = ((np.floor(x), np.ceil(x)) for x in (TABLE_SIZE * mu - 0.5, TABLE_SIZE * alpha - 0.5))
     texels = (np.clip(corner, 0, TABLE_SIZE - 1) + 0.5 for corner in product(*sides))
@@ -362,7 +371,7 @@ def diagnose_methods(case: Case) -> Diagnosis:
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Modes T and RT, compared with mode R or with 0, and the cause of each difference."""
+    """Compare mode RT with mode R, and mode T with no reflection; yield the cause of an error."""
     spec = case.of(TransmissionSpec)
     mode_R = case.another(spec.reflection) if spec.reflects else None
     unlike = "_unlike_R" if mode_R else ""
@@ -398,7 +407,7 @@ def critical(case: Case) -> Compared:
 
 
 def inside(case: Case) -> Iterator[Compared]:
-    """Light that leaves a denser medium, compared with light that enters by reversed paths."""
+    """Light that leaves a denser medium, compared with light that enters along reversed paths."""
     spec, mu = case.of(TransmissionSpec), np.array([0.05, 0.2, 0.5, 0.75, 1.0])
     views = directions_at(mu, 0.5)
     for index, alpha in ((1.5, 0.4), (2.0, 1.0)):
@@ -416,7 +425,7 @@ def inside(case: Case) -> Iterator[Compared]:
 def refraction(case: Case) -> Compared:
     batch = smooth(case)
     index = case.of(TransmissionSpec).functions.ior(batch.inputs)
-    # Choose frames in which a solid sphere refracts the views to the middles of sky texels.
+    # Choose frames in which a solid sphere refracts each view to the center of a texel of the sky.
     out = through_sphere(batch.wo, index, NORMAL)
     texel = samples.texel_middles(out)
     frames = samples.aimed(np.broadcast_to(np.eye(3), (len(out), 3, 3)), out, texel)
@@ -428,7 +437,7 @@ def refraction(case: Case) -> Compared:
 
 
 def transmitted_sky(case: Case, batch: Batch) -> tuple[Array, Mask]:
-    """Mean of the sky behind the surface, and a mask of the pairs that pass enough light."""
+    """Mean of the sky seen through a surface, and a mask of the pairs that pass enough light."""
     uniform = case.transmitted(batch)
     bright = np.asarray(uniform.min(axis=1) > LEAST_PASSED)
     uneven = case.transmitted(batch, samples.sky_map())
@@ -436,10 +445,10 @@ def transmitted_sky(case: Case, batch: Batch) -> tuple[Array, Mask]:
 
 
 def rough_refraction(case: Case) -> Compared:
-    """Mean of the sky behind rough glass, compared with the sky at the mean refracted direction.
+    """Mean of the sky seen through rough glass, compared with the sky at the mean ray direction.
 
-    The glass has two alphas. Each visible facet passes the same share of light, along the ray that
-    a solid sphere refracts.
+    The glass has two alphas. Each visible facet passes the same share of light, in the direction in
+    which a ray through the facet would leave a solid sphere.
     """
     functions, rng = case.of(TransmissionSpec).functions, samples.generator()
     batch = case.few[0].first(64)
@@ -468,10 +477,10 @@ def rough_refraction(case: Case) -> Compared:
 
 
 def through_sphere(wo: Array, index: Array, facet: Array) -> Array:
-    """Directions, (N, 3), in which views leave a solid sphere that they enter at a facet.
+    """Directions, (N, 3), in which view rays leave a solid sphere that the rays enter at a facet.
 
-    The ray meets the far surface at the same angle, so both refractions turn the ray by the same
-    amount: together, they are half a turn of the incoming ray about the ray inside.
+    A ray meets the far side of the sphere at the same angle, so the two refractions turn the ray by
+    equal angles. The leaving ray is the incoming ray, rotated by 180 degrees about the inner ray.
     """
     inner = transmission.refraction_direction(wo, facet, index)
     return np.asarray(wo - 2.0 * np.sum(wo * inner, axis=1, keepdims=True) * inner)
@@ -479,7 +488,7 @@ def through_sphere(wo: Array, index: Array, facet: Array) -> Array:
 
 def smooth(case: Case) -> Batch:
     batch = case.few[0].first(512)
-    if "color0" in batch.inputs:  # largest possible F at the normal, with the highest index
+    if "color0" in batch.inputs:  # add a nearly white color0, which has the highest IOR
         batch = batch.with_row(0, directions_at(0.1, 0.5), weight=1.0, color0=0.99)
     return batch.where(batch.wo[:, 2] >= LEAST_COSINE).altered(roughness=(0.0, 0.0))
 
@@ -491,10 +500,11 @@ def transmitted_edges(case: Case) -> Compared:
 
 
 def wrong_inputs(case: Case) -> list[str]:
-    """Inputs that should change the light through the surface but do not, or the reverse.
+    """Inputs that fail to change the light through the surface, or that wrongly change the light.
 
-    `retroreflective` only affects reflection. With transmission as opacity, only weight and tint
-    affect a lobe that only transmits; otherwise, the tangent affects the albedo of two alphas.
+    `retroreflective` affects only reflection. If opacity replaces refraction, only weight and tint
+    affect a lobe in mode T. In all other cases, every input must have an effect, even the tangent,
+    on which the albedo depends if the alphas differ.
     """
     batch = case.few[0].first(64)
     dead = dead_inputs(case, batch, lambda batch: case.transmitted(batch, samples.sky_map()))
@@ -507,16 +517,17 @@ def wrong_inputs(case: Case) -> list[str]:
 # --- thin films -----------------------------------------------------------------------------------
 
 Function = Callable[[Batch], Array]
-ROUGHNESSES = (1.0, 0.3)  # alphas with much and little compensation
-SMOOTH = (0.04, 0.005)  # alphas that need almost no compensation; shaders may sum fewer cosines
+ROUGHNESSES = (1.0, 0.3)  # alphas at which compensation is large and small
+# Alphas that need almost no compensation, so that shaders may average F over fewer cosines.
+SMOOTH = (0.04, 0.005)
 LEAST_F = 0.01  # films with a smaller F are not compared
-THIN_LIMIT = 1e-3  # thickness in nm of a film without effect
+THIN_LIMIT = 1e-3  # thickness in nm at which a film must have no effect
 
 
 def curves(films: microfacets.Films, case: Case) -> Compared:
     """F of films: values in the mirror direction, divided by the values of a perfect mirror.
 
-    The lobes are so smooth that their compensation is 1 for any F_ss.
+    The lobes are so smooth that the factor of the compensation is 1 for any F_ss.
     """
     batch = film_views(case.of(FilmSpec), films)
     mirror = mirror_of(case, batch)
@@ -525,21 +536,21 @@ def curves(films: microfacets.Films, case: Case) -> Compared:
 
 
 def film_limit(case: Case) -> list[Compared]:
-    """Values under films of index 1 or less, or of thickness THIN_LIMIT, compared with no film.
+    """Values under films of IOR 1 or less, or of thickness THIN_LIMIT, compared with no film.
 
-    A film with an index below 1 must equal a film with index 1, even if both are wrong. Under a
-    thin film, the five-digit sensitivities of the eye do not add up to 1; the deviation of the
-    equations is accepted.
+    A film with an IOR below 1 must equal a film with IOR 1, even if the film with IOR 1 is wrong.
+    For a thin film, the equations themselves deviate, because the eye's sensitivities of five
+    digits do not add up to 1. This deviation is accepted.
     """
-    # Remove the dip of Schlick's curve, which films ignore: where F is negative, F under a film is
-    # 0. Compare near the mirror direction, with one alpha: masking of two alphas has its own check.
+    # Remove the dip of Schlick's curve, because a negative F counts as 0 under a film. Compare near
+    # the mirror direction and with equal alphas, because another check covers two alphas.
     batch = backends.isotropic(case.backend.mirrored[0].first(case.backend.counts.few))
     batch = raised(batch, microfacets.LEAST_INDEX, 1.0).altered(thinfilm_thickness=300.0)
     without = batch.altered(thinfilm_thickness=0.0)
     bare = case.direct(without)
     vacuum, below_1 = (case.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, 0.5))
     cases = [Compared(batch, vacuum, bare), Compared(batch, below_1, vacuum)]
-    if "color0" not in batch.inputs:  # Schlick's curve uses another angle under a film
+    if "color0" not in batch.inputs:  # a film changes the angle in Schlick's curve
         thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
         deviation = case.expected(thin) - case.expected(without)
         cases.append(Compared(batch, case.direct(thin), bare + deviation))
@@ -547,13 +558,13 @@ def film_limit(case: Case) -> list[Compared]:
 
 
 def film_energy(case: Case) -> Iterator[Compared]:
-    for batch in case.few[::2]:  # skip exact directions; other checks cover index 0
+    for batch in case.few[::2]:  # skip special directions; other checks cover IOR 0
         most = case.direct(mirror_of(case, batch))
         yield Compared(batch, np.maximum(case.direct(batch), most), most)
 
 
 def diagnose_average(case: Case) -> Diagnosis:
-    """Test whether F at one cosine, or a mean of F0 and F90, replaces F_ss, or k is missing."""
+    """Test whether k is missing, or F_ss is replaced by F at one cosine or a mean of F0 and F90."""
     batch, measured, expected = film_average(case)
     (_, k), (_, expected_k) = (
         film_factors(case, value, batch, 1.0) for value in (case.direct, case.expected)
@@ -585,9 +596,9 @@ def film_average(case: Case) -> Compared:
 
 
 def film_smooth(case: Case) -> Compared:
-    """Values F (1 + F_ss k) of lobes with small losses, compared with smoother lobes.
+    """Values F (1 + F_ss k) of smooth lobes, compared with a prediction from smoother lobes.
 
-    F and k are the host's, and F_ss comes from the equations.
+    F and k are measured on the host; F_ss is computed by the equations.
     """
     batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     F, F_ss = averages(case, case.expected, batch)
@@ -602,10 +613,10 @@ def diagnose_visible(case: Case) -> Diagnosis:
 
 
 def visible(films: microfacets.Films, case: Case) -> Compared:
-    """Means F_o of F over visible facets, from albedos E_ss F_o (1 + F_ss k).
+    """Averages F_o of F over visible facets, computed from albedos E_ss F_o (1 + F_ss k).
 
-    Albedos are divided by the mirror's albedo, E_ss (1 + k) = 1. Pairs with F up to LEAST_F are
-    skipped.
+    Albedos are divided by the albedo of a perfect mirror, E_ss (1 + k) = 1. Pairs whose F is at
+    most LEAST_F are skipped.
     """
     batch = film_views(case.of(FilmSpec), films)
 
@@ -620,10 +631,10 @@ def visible(films: microfacets.Films, case: Case) -> Compared:
 
 
 def film_brushed(case: Case) -> Compared:
-    """Albedos of lobes with two alphas, divided by the mirror's albedo, if film_visible passes.
+    """Albedos of lobes with two alphas under films, divided by the albedo of a perfect mirror.
 
-    Alternatives that the specification permits for films would fail this check; film_visible judges
-    them.
+    The comparison is skipped if the check `film_visible` fails, because some formulas that the
+    specification permits for films would fail here. `film_visible` judges such formulas.
     """
     tolerance = case.tolerance("film_visible")
     if not case.control and tolerance.wrong(visible(microfacets.STEEP, case)).any():
@@ -633,7 +644,10 @@ def film_brushed(case: Case) -> Compared:
 
 
 def averages(case: Case, value: Function, batch: Batch) -> tuple[Array, Array]:
-    """F at the half vector of mirrored lights, and F_ss, (N, 3) each, from values at two alphas."""
+    """F at the half vector, and F_ss, (N, 3) each, from values in the mirror direction.
+
+    The lobes have two roughnesses, because F and F_ss are two unknowns.
+    """
     (first, k), (second, other_k) = (film_factors(case, value, batch, a) for a in ROUGHNESSES)
     F = (second * k - first * other_k) / (k - other_k)
     return F, (first - second) / (k - other_k) / np.maximum(F, 0.5 * LEAST_F)
@@ -642,10 +656,10 @@ def averages(case: Case, value: Function, batch: Batch) -> tuple[Array, Array]:
 def film_factors(
     case: Case, value: Function, batch: Batch, alpha: ArrayLike
 ) -> tuple[Array, Array]:
-    """F (1 + F_ss k) and k of films in mirrored lights, (N, 3) each.
+    """F (1 + F_ss k) and k of films for lights in the mirror direction, (N, 3) each.
 
-    Values are divided by the value of single scattering by perfectly reflecting facets, with F =
-    F_ss = 1.
+    Values are divided by the single scattering of perfectly reflecting facets. For a perfect mirror
+    with F = F_ss = 1, the quotient is 1 + k.
     """
     alpha = np.broadcast_to(alpha, len(batch.wo))
     batch = batch.altered(roughness=np.stack([alpha, alpha], axis=1))

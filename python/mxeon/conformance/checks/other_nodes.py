@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of nodes that do not scatter light: emissions, media, and utility nodes."""
+"""Checks of nodes that do not scatter light: emissive nodes, media, and utility nodes."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -35,7 +35,7 @@ def above(case: Case) -> Iterator[Compared]:
 
 
 def between(case: Case) -> Iterator[Compared]:
-    """Transmitted light, compared with the light without a medium times the transmittance."""
+    """Light through a medium, compared with light without the medium times the transmittance."""
     clear = {each.name: np.zeros(3) for each in case.spec.inputs if each.type == "vector3"}
     for batch in case.batches:
         lit = batch.altered(**{"bottom/weight": 1.0})
@@ -52,7 +52,7 @@ def outside(case: Case) -> Compared:
 
 
 def diagnose_finite(case: Case) -> Diagnosis:
-    """The number of non-finite outputs, and the input range that contains all of them."""
+    """Report the number of non-finite outputs, and an input range that contains these outputs."""
     compared = [unbounded(outside(case))]
     cause = correct_except(compared, EXACT, span(compared, EXACT))
     return Diagnosis((replace(cause, kind=Kind.NOT_FINITE),))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of path-tracing code: samples match the stated density, and weights match the values.
+"""Checks of path-tracing code: samples follow the stated density, and weights match the values.
 
-Views are from both sides of the surface. A smooth surface reflects and refracts almost all samples
-in one direction each, so the cells in which samples are counted are narrow around both directions.
+Views are from both sides of the surface. A smooth surface reflects or refracts almost all samples
+in one of two directions, so samples are counted in cells that are narrow around both directions.
 """
 
 import re
@@ -58,34 +58,37 @@ SCATTERED = """if (what < 0.5)
     if (!kept)
         return vec3(0.0);
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
-# Separate from SCATTERED: drivers inline the material into each call.
+# Code that is separate from SCATTERED, because drivers inline the whole material at each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
-# GLSL that returns each value. In CALL, `what` is the position of a value in this table.
+# GLSL code that returns a value, by the value's name. The argument `what` of CALL is the position
+# of the name in this table.
 FUNCTIONS = {
     **dict.fromkeys(("evaluate", "pdf", "wi", "weight", "density"), SCATTERED),
     **dict.fromkeys(("opacity", "emission"), PASSED),
     "random": RANDOM,
 }
-TARGETS = ("glsl", "essl", "vulkan", "slang")  # targets of mxeon.shaders.path_tracing
+TARGETS = ("glsl", "essl", "vulkan", "slang")  # shader languages of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
-ANSWERS = cache.Recent[Array](64)  # a check and its control need the same values
-# Two views that see many or few facets below the critical angle, and a view at which no light
-# leaves a smooth solid.
+ANSWERS = cache.Recent[Array](64)  # cache for a check and the check's control
+# Two views that, from inside a solid, see many or few facets below the critical angle, and a third
+# view at which no light leaves a smooth solid.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
-# Smallest value that must be sampled: a sheen's fitted albedo may be 0 where the exact one is 3e-6.
+# Smallest value that must be sampled. Smaller values may be missed, because a sheen's fitted albedo
+# may be 0 where the exact albedo is 3e-6.
 LEAST_LIGHT = 1e-5
-LEAST_DRAWN = 1e-5  # ratio of density to value, below which light is hardly ever sampled
-# Below this sample weight (an albedo), shares of lobes have few digits: a sheen's fit crosses 0.
+LEAST_DRAWN = 1e-5  # ratio of density to value up to which light counts as never sampled
+# Sample weight (an albedo) below which the probabilities of lobes have few correct digits, because
+# a sheen's fitted albedo crosses 0.
 LEAST_ALBEDO = 1e-3
-LEAST_COUNTED = 0.2  # minimum roughness of lobes with counted samples: the cells are coarse
-# GLSL expressions that convert a parameter, a float or a vec3, to an input's type.
+LEAST_COUNTED = 0.2  # minimum roughness if samples are counted, because the cells are coarse
+# GLSL expressions that convert a parameter of type float or vec3 to the type of an input.
 CONVERTED = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
 VECTORS = ("vector2", "vector3", "color3")
-MEAN_WEIGHT = 0.3333  # MaterialX's weight of a channel when it turns a transparency into alpha
+MEAN_WEIGHT = 0.3333  # weight of a channel when MaterialX turns a transparency into alpha
 OPACITY, EMISSION = 0.6, 0.3
-# Inputs with which a surface shader emits light and has an alpha below 1.
+# Inputs that make a surface shader emit light and have an alpha below 1.
 TRANSPARENT: dict[str, float | str] = {
     **dict.fromkeys(("opacity", "geometry_opacity", "alpha"), OPACITY),
     **dict.fromkeys(("emission", "emission_luminance", "emissive", "emissiveColor"), EMISSION),
@@ -93,23 +96,24 @@ TRANSPARENT: dict[str, float | str] = {
 }
 WALLS = ("thin_walled", "geometry_thin_walled")
 
-# The input with the index of refraction, and the inputs of glass, by node. UsdPreviewSurface is
-# left out: its Schlick curve has no index for the denser side.
+# For each node, the input with the index of refraction, and other inputs of glass. The table has no
+# UsdPreviewSurface, because that node's Schlick curve has no IOR for the denser side.
 GLASS: dict[str, tuple[str, Values]] = {
     "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.4, 0.4)}),
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
     "open_pbr_surface": ("specular_ior", {"transmission_weight": 1.0, "specular_roughness": 0.5}),
 }
-INDEX = 2.0  # its inverse is exact
+INDEX = 2.0  # an IOR whose inverse is exact in float32
 DRAWN = check.family(LobeSpec) - BELOW
-GLASSY = TRANSMITTING | SURFACES  # light enters and leaves a solid
-# Lobes whose reflection depends on an index, which is inverted for light inside.
+GLASSY = TRANSMITTING | SURFACES  # nodes through which light enters and leaves a solid
+# Lobes whose reflection depends on an IOR, which is inverted for light inside a solid.
 INDEXED = (
     GLASSY
     | check.family(combinations.CombinedSpec)
     | check.family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
 )
-# Inputs of clear glass with index INDEX, by node, and of its Fresnel curve for light from outside.
+# For each node, inputs of clear glass of IOR INDEX, and inputs of the glass's Fresnel curve for
+# light from outside.
 SOLIDS: dict[str, tuple[Values, dict[str, Array]]] = {
     "dielectric_bsdf": (
         {**GLASS["dielectric_bsdf"][1], "ior": INDEX},
@@ -131,11 +135,11 @@ DRAWN_SUM = Term(5e-3, "a sum of 4096 draws")
 
 @dataclass(frozen=True)
 class Paths:
-    """The path-tracing text of a document's only material, on a host."""
+    """Path-tracing code of a document's only material, and the host that runs the code."""
 
     host: base.Host
     text: str
-    ports: "tuple[Port, ...]" = ()  # inputs of the material that each row sets
+    ports: "tuple[Port, ...]" = ()  # inputs of the material that differ between rows
 
     def values(
         self,
@@ -146,10 +150,10 @@ class Paths:
         inside: ArrayLike = False,
         inputs: Values = NO_INPUTS,
     ) -> Array:
-        """Values (N, 3) of one of FUNCTIONS; 0 where nothing is sampled.
+        """Values (N, 3) of the function `what` of FUNCTIONS; 0 where nothing is sampled.
 
-        - `u`: Random numbers of a sample.
-        - `inside`: Whether `wo` is inside a solid.
+        - `u`: Random numbers that select a sample.
+        - `inside`: Whether the viewer is inside a solid.
         - `inputs`: Inputs of the material by name or path, and the surface's normal and tangent.
         """
         answer = FUNCTIONS[what]
@@ -183,7 +187,7 @@ class Paths:
 def paths(
     host: base.Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
 ) -> Paths:
-    """The path-tracing text of a document; inputs in `varied` (names or paths) become variables."""
+    """Path-tracing code of a document; inputs with a name or path in `varied` become variables."""
     from mxeon.shaders.generation import generate
 
     uniforms = bool(varied)
@@ -205,9 +209,10 @@ def paths(
 
 
 def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
-    """Materials with pairs in individual frames: random ones of a node, or a shader with all lobes.
+    """Path-tracing code of a node, and pairs of directions with individual frames and inputs.
 
-    `walls` are kinds of surface shaders: False for solid, True for thin-walled if supported.
+    A lobe has random inputs; a surface shader has inputs to which all lobes contribute. `walls`
+    lists the wanted kinds of surface shader: False for a solid, True for a thin wall if supported.
     """
     if not is_shader(case.spec):
         yield random_materials(case)
@@ -239,7 +244,7 @@ def is_shader(spec: Spec) -> bool:
 
 
 def random_materials(case: Case) -> tuple[Paths, Batch]:
-    """Random materials of a node whose normal and tangent inputs differ from the surface's."""
+    """Random materials of a node; the inputs for normal and tangent differ from the surface's."""
     spec, batch = case.lobe, case.backend.turned
     rng, count = generator(), len(batch.wo)
     frame: Values = {each.name: NORMAL for each in spec.inputs if each.type == "vector3"}
@@ -256,25 +261,25 @@ def random_materials(case: Case) -> tuple[Paths, Batch]:
 
 
 def random(count: int, rng: np.random.Generator) -> Array:
-    """Random numbers (N, 3) in [0, 1) with 24 bits, like the random numbers of a shader."""
+    """Random numbers (N, 3) in [0, 1) of 24 bits, like the random numbers of a shader."""
     return rng.integers(0, 1 << 24, (count, 3)).astype(np.float64) * 2.0**-24
 
 
 def lattice(count: int) -> Array:
-    """Numbers (count, 3) that evenly fill the unit cube [0, 1)^3."""
-    # Columns are multiples of the powers of 1 / x, modulo 1, with x^4 = x + 1.
+    """Points (count, 3) that evenly fill the unit cube [0, 1)^3."""
+    # Each column holds the multiples, modulo 1, of a power of 1 / x, where x^4 = x + 1.
     steps = 1.2207440846057596 ** -np.arange(1.0, 4.0)
     return float32((0.5 + np.arange(count)[:, np.newaxis] * steps) % 1.0 * (1.0 - 2.0**-24))
 
 
 def refracted(wo: Array, index: float = 1.5) -> Array:
-    """Direction in which a smooth surface refracts; straight ahead beyond the critical angle."""
+    """Direction in which a smooth surface refracts a view; -wo beyond the critical angle."""
     x, y, _ = -wo / index
     return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)]) if x * x + y * y < 1.0 else -wo
 
 
 def steepness(density: Array) -> Array:
-    """Amplification of a direction's rounding: 1 + 1 / alpha, with alpha from the density.
+    """Factor that amplifies the rounding of a direction: 1 + 1 / alpha, computed from the density.
 
     GGX facets reflect with a density of at most 1 / (4 pi alpha^2). The relative slope of the
     density is about 1 / alpha.
@@ -283,12 +288,12 @@ def steepness(density: Array) -> Array:
 
 
 def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
-    """Deviations of samples from their density, in standard deviations, per material and view.
+    """Deviations of samples from the stated density, per material and view.
 
-    Each row has the deviation, whether the view is inside a solid, and the view with its material.
-    Three views are enough for a surface shader, which has one solid and one thin wall, and for a
-    control, which stops at the first failure. Errors of a quadrature with few nodes only increase
-    the deviation.
+    Each row has the deviation in standard deviations, whether the view is inside a solid, and a
+    batch with the view and the material. A surface shader has three views of a solid and of a thin
+    wall. A control has three views, because a control stops at the first failure. A quadrature with
+    few nodes cannot hide a failure, because quadrature errors only increase the deviation.
     """
     u = random(DRAWS, generator())
     for text, batch in subjects(case, False, True):
@@ -297,7 +302,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
             for name, each in batch.inputs.items()
             if "roughness" in name
         }
-        if "cuticle_angle" in batch.inputs:  # steep lobes have a pole along the fiber
+        if "cuticle_angle" in batch.inputs:  # tilted lobes have a pole along the fiber
             rough["cuticle_angle"] = np.clip(batch.inputs["cuticle_angle"], 0.45, 0.55)
         batch = batch.altered(**rough)
         thin = any(name in batch.inputs for name in WALLS)  # a thin wall has no inside
@@ -333,8 +338,8 @@ def pdf(case: Case) -> Measurement:
 def parts(case: Case) -> Iterator[tuple[Cause, Compared]]:
     """Compare weight times density with value, and density with material_pdf; find missed light.
 
-    Each comparison comes with the cause of a difference. Weights and densities are divided by the
-    expected ones, and their errors by the amplification of roundings.
+    Each comparison comes with the cause of a possible difference. Measured values are divided by
+    expected values, and errors are divided by the amplification of roundings.
     """
     for text, batch in subjects(case, False, True):
         u, wo = random(len(batch.wo), generator()), batch.world(batch.wo)
@@ -396,10 +401,10 @@ def path_value(case: Case) -> Iterator[Compared]:
         batch = replace(batch, wi=wi)
         normal = np.broadcast_to(NORMAL, wi.shape)
         if shader and batch.frame is not None:
-            # The graph rotates tangents about the normal, which is +z or -z of the frame.
+            # Use +z or -z of the frame, because the node graph rotates tangents about the normal.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
-        # A rasterizer cannot view lobes with an index of refraction from inside.
+        # A rasterizer cannot view lobes that have an IOR from inside a solid.
         inside = np.zeros(count) if INDEXED(case.spec) else np.arange(count) % 2
         values = partial(
             text.values,
@@ -421,11 +426,11 @@ def path_value(case: Case) -> Iterator[Compared]:
 
 
 def path_emission(case: Case) -> Iterator[Compared]:
-    """Radiance toward views from both sides; frames permute the axes, which avoids roundings."""
+    """Radiance toward views from both sides, in frames that permute the axes without roundings."""
     spec = case.of(emission.EmissionSpec)
     permutations = np.stack([np.roll(np.eye(3), shift, axis=0) for shift in range(3)])
     for batch in (*case.batches, case.backend.take(spec.backs)):
-        if "normal" in batch.inputs:  # another node sets a cone's axis
+        if "normal" in batch.inputs:  # the axis of a cone comes from another node
             continue
         frame = permutations[np.arange(len(batch.wo)) % 3]
         inputs = {**batch.inputs, "normal": frame[:, :, 2], "tangent": frame[:, :, 0]}
@@ -479,7 +484,7 @@ def path_inside(case: Case) -> Iterator[Compared]:
 
 
 def clear_draws(case: Case, inside: bool) -> Iterator[tuple[Batch, Array, Array]]:
-    """Each view of a clear solid, with sampled directions, and weights divided by the tint."""
+    """Views of a clear solid, each with sampled directions and with weights divided by the tint."""
     values, _ = SOLIDS[case.spec.node]
     [(text, _)] = subjects(case)
     inputs = {**values, "lobe_normal/value": NORMAL, "lobe_tangent/value": TANGENT}
@@ -522,26 +527,26 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 
 # --- directions against a density: a chi-square test on the sphere -------------------------------
 
-# Cells divide the angle from a pole, and the azimuth around the pole. The first ring is narrow, for
-# lobes that are nearly a single direction: choose this direction as the pole. A density that is
-# wrong everywhere by a fraction e adds N e^2 to chi-square, whose standard deviation is the root of
-# twice the number of cells: with 2^15 samples in these cells, e = 6.5 % is detected at six standard
-# deviations, and with half of the samples at three.
+# Cells divide the angle from a pole and the azimuth around the pole. The pole is the main direction
+# of a smooth lobe, for which the first ring of cells is narrow. If a density of N samples is wrong
+# everywhere by a fraction e, chi-square grows by N e^2. The standard deviation of chi-square is the
+# square root of twice the number of cells. In 272 cells, e = 6.5 % is therefore six standard
+# deviations with 2^15 samples, and three standard deviations with half as many samples.
 CELLS = 16  # divisions of the angle and of the azimuth
 ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes per axis of a patch
-# Attempts to show that samples follow a density, from cheap to accurate. Each has a number of
-# samples, numbers of nodes, and the score up to which no further attempt is needed.
+# Attempts to show that samples follow a density, from cheap to accurate. Each row has a number of
+# samples, numbers of quadrature nodes, and the score up to which no further attempt is needed.
 LOOKS = (
     (DRAWS // 2, ORDERS[:1], 2.0),
     (DRAWS // 2, ORDERS[:4], 2.0),
     (DRAWS, ORDERS[:4], 3.0),
     (DRAWS, ORDERS, 0.0),
 )
-CLOSE = 2.0  # two quadratures of a patch must agree up to this number of expected samples
+CLOSE = 2.0  # largest difference of two quadratures of a patch, in expected samples
 MOST_DEVIATIONS = 6.0  # tolerance of the check `pdf`, in standard deviations
-CONE = 0.02  # width of the first ring, in radian
-LEAST = 1e-7  # within this distance of the pole, in radian, a density is constant
-INNER = 9  # number of rings of patches in the first ring of cells; each is wider by the same factor
+CONE = 0.02  # angular width of the first ring of cells, in radians
+LEAST = 1e-7  # angle from the pole, in radians, up to which a density counts as constant
+INNER = 9  # number of rings of patches in the first ring of cells; radii grow geometrically
 RARE = 10.0  # cells with fewer expected samples are merged
 
 
@@ -554,12 +559,13 @@ def deviation(
 ) -> float:
     """Deviation of samples from a density, in standard deviations of a chi-square test.
 
-    The deviation is 0 if it is less than the expected noise, and infinite if the density is not a
-    number. The cube root of chi-square over its degrees of freedom is nearly normal
+    A deviation below the expected noise counts as 0. If the density is NaN, the deviation is
+    infinite. The cube root of chi-square, divided by the degrees of freedom, is nearly normal
     [WilsonHilferty1931].
 
-    - `draws`: Unit vectors, (N, 3); zeros for lost samples, whose share is 1 minus the integral.
-    - `density`: Density of unit vectors (M, 3), in 1/sr, (M,).
+    - `draws`: Unit vectors, (N, 3), or zeros for lost samples. The expected share of lost samples
+      is 1 minus the integral of the density.
+    - `density`: Function that returns densities (M,), in 1/sr, for unit vectors (M, 3).
     - `pole`, `other`: Directions around which a smooth lobe may be sampled. If the directions
       differ, the cone around `other` is one cell.
     - `nodes`: See `density_integrals`.
@@ -607,11 +613,12 @@ def cell(w: Array, pole: Array) -> NDArray[np.int64]:
 def density_integrals(
     density: Callable[[Array], Array], poles: Sequence[Array], close: float, nodes: Sequence[int]
 ) -> Array:
-    """Integrals of a density over the patches of a sphere, and of a cone around a second pole.
+    """Integrals of a density over patches of a sphere, and over patches of a cone.
 
-    The patches of the sphere surround the first pole and leave out the cone. For each patch, the
-    number of nodes per axis increases along `nodes` until two results agree up to `close`, in the
-    patch and next to the patch: an edge of a density may pass between few nodes.
+    The patches of the sphere surround the first pole and exclude the cone, which surrounds the
+    second pole. For each patch, the number of nodes per axis increases along `nodes` until two
+    results agree up to `close` in the patch and in all neighboring patches. The neighbors count,
+    because the nodes of a single patch may miss an edge of the density.
     """
     frames = np.stack(list(map(axes, poles)))
     sphere = (INNER + CELLS) * CELLS  # number of patches around the first pole
@@ -690,7 +697,7 @@ ROWS = (
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=diagnosis.defect("other_path_value"),
-          methods=lambda spec, methods: not methods.distributed),  # distributed layers change sums above 1
+          methods=lambda spec, methods: not methods.distributed),  # distributing a layer changes sums above 1
     PATHS(key="path_emission",
           claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
           applies=check.family(emission.EmissionSpec), measure=path_emission, tolerance="value",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pixels with several lights or lobes: their value must be the sum of the values of the parts.
+"""Checks that a pixel with several lights or lobes shows the sum of separately evaluated parts.
 
-A pixel is in one state per axis of AXES, such as "two lights" on the axis "lights"; any two states
-of different axes occur together in some pixels. Expected values are the host's own values of the
-parts, so a wrong model passes and a failure has one reason.
+For each axis of AXES, such as "lights", a pixel has one state, such as "two lights". Any two states
+of different axes occur together in some pixels. The host that is judged also evaluates the parts,
+so a wrong model passes, and a failure always means that the sum is wrong.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -33,12 +33,14 @@ if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 EACH = 12  # pixels per combination of states: three 2 x 2 squares in a picture with two rows
-STEP = 0.05  # angle between neighboring pixels of a bent surface with radius 1, in radian
+STEP = 0.05  # angle between neighboring pixels of a bent surface with radius 1, in radians
 VECTORS = ("normal", "tangent", "position", calls.SURFACE)
 FLAT = calls.NORMAL, calls.TANGENT, (0.0, 0.0, 0.0), calls.NORMAL
-CLEARER = 0.7  # report two states if both occur in less than this share of one state's pixels
+# A pair of states is reported instead of a single state if the pixels in both states are fewer than
+# this share of the pixels in the single state.
+CLEARER = 0.7
 Random = np.random.Generator
-Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order of a list of pixels
+Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order that rearrange pixels
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class Pixels:
     light: Array  # direction of a second light, in the local frame
     second: Mapping[str, Array] | None = None  # inputs of a second lobe
     second_frame: Array | None = None  # frame of the second lobe, None for the surface's frame
-    differing: tuple[str, ...] = ()  # input that differs between the two lobes of each pixel
+    differing: tuple[str, ...] = ()  # input of each pixel that differs between two lobes
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
     client: Client = CLIENT  # how the environment is turned and scaled
@@ -65,7 +67,7 @@ def same(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def lit(pixels: Pixels, rng: Random, count: int, first: float = 1.0, second: float = 1.0) -> Pixels:
-    """Set the number of lights; `first` or `second` of -1 mirrors this light to the dark side."""
+    """Set the number of lights; if `first` or `second` is -1, move that light to the dark side."""
     wi = pixels.batch.wi
     batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
     light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
@@ -83,7 +85,10 @@ def framed(
     along: bool = False,
     scaled: bool = False,
 ) -> Pixels:
-    """Replace random frames; options move views to the normal, or lean and scale tangents."""
+    """Replace the frames by the result of `make`.
+
+    `along` moves views to the normal; `scaled` leans and scales tangents.
+    """
     batch = pixels.batch
     assert batch.frame is not None
     frame = make(batch.frame, rng)
@@ -93,8 +98,8 @@ def framed(
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": float32(normal), "tangent": float32(tangent)}
     wo = np.broadcast_to(calls.NORMAL, batch.wo.shape) if along else batch.wo
-    # Do not turn an uneven environment here: the normal may be its pole, where a turn makes the
-    # azimuth depend on roundings.
+    # If normals are axes, do not turn an uneven environment: a normal may point to a pole of the
+    # map, where the azimuth of a turned direction depends on roundings.
     client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
     batch = replace(batch.altered(**axes), wo=wo, frame=frame)
     return replace(pixels, batch=batch, client=client)
@@ -105,7 +110,7 @@ def upright(frames: Array, rng: Random) -> Array:
 
 
 def on_axes(frames: Array, rng: Random) -> Array:
-    """Frames in random order, with normals along all axes, both ways; some tangents are axes."""
+    """Frames in random order with normals along +x, -x, ... -z; half of the tangents are axes."""
     turns = [np.roll(np.eye(3), shift, axis=0) for shift in range(3)]
     tangents = np.eye(3), np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
     rows = product(tangents, turns, ([1, 1, 1], [1, -1, -1]))
@@ -113,7 +118,7 @@ def on_axes(frames: Array, rng: Random) -> Array:
 
 
 def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -> Pixels:
-    """A surface that bends in each square by `columns` and `rows` radian per column and row."""
+    """Bend the surface in each square of pixels by `columns` and `rows`, in radians per pixel."""
     batch, pixel = pixels.batch, np.arange(EACH)
     assert batch.frame is not None
     first, column, row = pixel // 4 * 4, pixel % 2, pixel // 2 % 2
@@ -132,7 +137,7 @@ def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -
 
 
 def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool = False) -> Pixels:
-    """Add a second lobe; in each pixel, one of its inputs or one component of an input differs."""
+    """Add a second lobe that differs from the first lobe in one input or component per pixel."""
     first = broadcast_inputs(pixels.batch)
     second, differing = dict(first), [""] * EACH
     names = [name for name in first if name not in VECTORS]
@@ -147,9 +152,9 @@ def doubled(pixels: Pixels, rng: Random, component: bool = False, swapped: bool 
 
 
 def leaning(pixels: Pixels, rng: Random) -> Pixels:
-    """Add a second lobe with equal inputs but, after the first square, another normal.
+    """Add a second lobe with equal inputs but another normal, except in the first square of pixels.
 
-    The second normal is halfway between the surface's normal and the viewer.
+    The normal of the second lobe is halfway between the surface's normal and the viewer.
     """
     batch = pixels.batch
     assert batch.frame is not None
@@ -179,19 +184,19 @@ def constant(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def in_image(pixels: Pixels, rng: Random) -> Pixels:
-    """Read inputs from an image, whose precision is that of half floats."""
+    """Read inputs from an image of half floats."""
     halves = changed(pixels, lambda values: values.astype(np.float16).astype(np.float64))
     return replace(halves, image=True)
 
 
 TWO_SIDED, TURNED_SKY = "an environment: dim and two-sided", "an environment: turned"
-# A rotation about y that maps the middles of sky texels to each other.
+# A rotation about y that maps each center of a sky texel to another center.
 ANGLE = 37.0 * np.pi / samples.SKY_ROWS
 COSINE, SINE = np.cos(ANGLE), np.sin(ANGLE)
 ROTATION = np.array([[COSINE, 0.0, SINE], [0.0, 1.0, 0.0], [-SINE, 0.0, COSINE]])
 TURNING = tuple((base.TURN @ np.pad(ROTATION, (0, 1))).T.ravel().tolist())
-# States by axis. Other checks use the first state of each axis. States with the same words before a
-# colon are also diagnosed as a group.
+# States of a pixel by axis. The first state of an axis is the default, which other checks use.
+# States with the same words before a colon form a group that a diagnosis can name.
 AXES: dict[str, dict[str, Build]] = {
     "lights": {
         "one light": partial(lit, count=1),
@@ -245,7 +250,7 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
     """
     sizes = [len(axis) for axis in axes]
     rows = np.array(list(product(*map(range, sizes))))
-    # For each combination, a mask of the pairs of states that it contains.
+    # For each combination of states, a mask of the pairs of states in the combination.
     masks = [
         np.eye(sizes[one] * sizes[other], dtype=bool)[rows[:, one] * sizes[other] + rows[:, other]]
         for one, other in combinations(range(len(axes)), 2)
@@ -270,7 +275,8 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
         unsupported.add("inputs from an image")
     if "frame" in unsupported:
         unsupported.add(TURNED_SKY)
-    # Surface shaders do not expose tints, and the environment does not scale opacity.
+    # Skip the dim, two-sided environment if the effect is unknown: surface shaders do not expose
+    # their tints, and light that passes by opacity ignores the environment's intensity.
     if Ability.MATERIAL in lobe.requires or backend.host.active.transmission == "opacity":
         unsupported.add(TWO_SIDED)
     axes = tuple(
@@ -280,14 +286,15 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     rows = covering(axes)
     turned = backend.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
-    if lobe.curved:  # subsurface light leaves at other points
+    if lobe.curved:  # light leaves at other points, so draw new inputs
         batch = batch.altered(**lobe.random_inputs(rng, len(batch.wo)))
     if lobe.types.get("roughness") == "vector2":
         alpha = np.array(batch.inputs["roughness"])
         alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # two alphas in at least every other pixel
         batch = batch.altered(roughness=alpha)
     if "weight" in lobe.names:
-        # Keep weights equal in a square: derivatives are undefined where a lobe is skipped.
+        # Keep weights equal in each 2 x 2 square of pixels, because screen-space derivatives are
+        # undefined where a shader skips a lobe of weight 0.
         weights = rng.choice((0.0, 0.3, 1.0, 1.0), len(batch.wo) // 4)
         batch = batch.altered(weight=np.repeat(weights, 4))
     groups = []
@@ -310,8 +317,8 @@ def states(case: Case) -> Iterator[Compared]:
     groups: Sequence[Pixels] = pixels_of(case.backend)
     if case.control:
         groups = [each for each in groups if not each.image][:6]
-    # Each picture shows all groups with the same shader and environment. Groups with constant
-    # inputs need a picture each.
+    # One picture shows all groups of pixels with the same shader and environment. Each group with
+    # constant inputs needs a separate picture.
     pictures: dict[tuple[bool, bool, Client, bool, int], list[int]] = {}
     for number, pixels in enumerate(groups):
         alone = number if "constant inputs" in pixels.states else -1
@@ -336,7 +343,8 @@ def states(case: Case) -> Iterator[Compared]:
         yield Compared(pixels.batch, measured[number], expected)
 
 
-# Layouts of pixels in a picture with two rows: 2 x 2 squares, transposed squares, or far apart.
+# Layouts of pixels in a picture with two rows: 2 x 2 squares, transposed 2 x 2 squares, or far
+# apart, so that no two pixels of the same square are neighbors.
 SQUARES, TRANSPOSED = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1))
 APART = (-1, EACH), (1, 0)
 
@@ -360,8 +368,8 @@ def imaged(
 ) -> Array:
     """Light in pixels whose last lobe reads its inputs from an image.
 
-    The image has a row for each input and a column for each pixel, of 2 x 2 equal texels each.
-    `shaders` caches the shaders with one and with two lobes.
+    The image has a row for each input and a column for each pixel. Each entry has 2 x 2 equal
+    texels. `shaders` caches the shader with one lobe and the shader with two lobes.
     """
     count, lobe = len(batch.wo), "second" if two else "lobe"
     paths = {name.removeprefix("second/"): name for name in batch.inputs if ("/" in name) == two}
@@ -398,10 +406,11 @@ def batch_of(pixels: Pixels) -> Batch:
 
 
 def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
-    """Expected light: sums of separately evaluated parts, next to pixels with other inputs.
+    """Expected light of each pixel: the sum of parts with one light and one lobe each.
 
-    Parts are on a plane in the surface's frame, except under an uneven sky. Lobes that depend on
-    the shape of the surface keep this shape, with rows and columns of each square exchanged.
+    The parts are evaluated in another order of pixels, so that a pixel has other neighbors. A part
+    is on a plane in the surface's frame, except under an uneven sky. For a lobe that depends on the
+    shape of the surface, a part keeps the shape, but rows and columns of each square are exchanged.
     """
     curved = case.lobe.curved
     layout = TRANSPOSED if curved else APART
@@ -444,7 +453,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
 
 
 def in_turn(batch: Batch, client: Client) -> Batch:
-    """A batch whose surface is turned if the client turns the environment."""
+    """The batch, with the surface turned if the client turns the environment."""
     if client.turn == CLIENT.turn:
         return batch
     frame = np.eye(3) if batch.frame is None else batch.frame
@@ -468,9 +477,9 @@ def diagnose(case: Case) -> results.Diagnosis:
 
 
 def shared(wrong: Mask, states: Sequence[set[str]]) -> results.Cause:
-    """Find the states that all wrong pixels share: one state, two together, or either of two.
+    """Find what all wrong pixels have in common: one state, two states, or either of two states.
 
-    - `states`: Names of each pixel's states.
+    - `states`: For each pixel, the names of the pixel's states.
     """
     names = sorted(set().union(*states))
     masks = {name: np.array([name in each for each in states]) for name in names}
@@ -493,7 +502,7 @@ def shared(wrong: Mask, states: Sequence[set[str]]) -> results.Cause:
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
-    """Names of all states but the first of each axis, and of their groups (before a colon)."""
+    """Names of states except the first state of each axis, and of groups named before a colon."""
     first = {next(iter(each)) for each in axes.values()}
     parts = [state.split(":") for state in states if state not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
@@ -505,7 +514,8 @@ ROWS = (
           claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
           applies=check.family(LobeSpec), measure=states, control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
-          # With opacity, these lobes pass their tint in every view, so the control cannot fail.
+          # If opacity replaces refraction, a lobe in mode T passes the tint at every view, so the
+          # control, which exchanges views, could not fail.
           methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),
 )
 # fmt: on

@@ -22,9 +22,9 @@ from mxeon.conformance.tolerance import Compared, count_named, count_of, scaled
 from mxeon.errors import NotRun
 from mxeon.hosts.calls import NORMAL, TANGENT
 
-WORST = 32  # number of the worst pairs, which a diagnosis tries to correct
+WORST = 32  # number of worst pairs that a diagnosis tries to correct
 CHANGED = 8  # number of pairs for each changed input
-# Inputs that disable a lobe, keyed by the lobe's name.
+# Inputs that disable a lobe if set to 0, by the lobe's name.
 LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
     "sheen": ("sheen", "fuzz_weight", "sheen_color"),
@@ -55,7 +55,7 @@ def diagnose_lobes(case: Case) -> Diagnosis:
 
 
 def wrong_layers(case: Case) -> list[str]:
-    """Titles of the material's lobes that have a wrong throughput when judged separately."""
+    """Titles of lobes in the material whose throughput is wrong when a lobe is judged alone."""
     from mxeon.shaders.document.graphs import categories, inner_nodes
 
     used = categories(inner_nodes(case.evaluating.shader.document))
@@ -73,8 +73,9 @@ SURFACES, SUM = family(SurfaceShaderSpec), defect("sum_of_lobes")
 def values(case: Case) -> Compared:
     """Values compared with the layer equation.
 
-    Fits for two alphas are coarser: the error of such a pair is scaled by VALUE_ERROR /
-    STRETCHED_FIT, or replaced by the mean error of all such pairs if the mean is larger.
+    Shaders fit anisotropic lobes less accurately. The error of a pair with an anisotropic lobe is
+    therefore multiplied by VALUE_ERROR / STRETCHED_FIT, or replaced by the mean error of all pairs
+    with anisotropic lobes if the mean is larger.
     """
     [batch] = case.batches
     expected = case.expected(batch)
@@ -109,28 +110,28 @@ def glass(case: Case) -> Iterator[Compared]:
     passed = spec.transmitted(batch, case.opaque)
     measured = case.transmitted(batch)
     yield Compared(batch, measured, passed)
-    if case.host.active.environment == "fis":  # other methods use a fit or reflect nothing
+    if case.host.active.environment == "fis":  # other methods fit albedos or reflect nothing
         yield Compared(batch, measured + case.albedo(batch), passed + case.expected_albedo(batch))
 
 
 def unexpected(case: Case) -> list[str]:
-    """Inputs that have an effect although documented as having none, or the reverse."""
+    """Inputs with an effect that should have no effect, and inputs that wrongly have no effect."""
     wrong = expected_dead(case).symmetric_difference(without_effect(case))
     return sorted(wrong.difference(case.backend.unset))
 
 
 def expected_dead(case: Case) -> set[str]:
-    """Inputs without effect. A roughness cannot blur transmission that is rendered as opacity."""
+    """Inputs that must have no effect, such as extra roughness if transmission becomes opacity."""
     spec = case.of(SurfaceShaderSpec)
     blur = {"transmission_extra_roughness"} & {*spec.names} if case.opaque else set()
     return {*spec.without_effect} | blur
 
 
 def without_effect(case: Case) -> list[str]:
-    """Inputs that change neither a value in any branch nor the emission."""
+    """Inputs that change neither the scattered light in any branch nor the emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
     defaults = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
-    for name in spec.names:  # frame inputs have no value in a document
+    for name in spec.names:  # normals and tangents have no default number
         if name.endswith(("normal", "tangent")):
             defaults.setdefault(name, TANGENT if "tangent" in name else NORMAL)
     rows = [row for changes in spec.changes.values() for row in changes]
@@ -149,7 +150,7 @@ def without_effect(case: Case) -> list[str]:
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
-# The host evaluates only the first row, whose values replace all others.
+# The host evaluates only the first row; the result replaces the results of all other rows.
 ignore_changes = controls.Control(
     "every change is dropped",
     lambda case: replace(
@@ -174,7 +175,7 @@ SENTENCE = Comparison("value", direct_values, lambda case: case.valued.value_can
 
 
 def diagnose_sentence(case: Case) -> Diagnosis:
-    """Find which reading of the sentence the shader, or at least its graph of lobes, follows."""
+    """Find the reading of the sentence that the shader, or at least the graph of lobes, follows."""
     from mxeon.conformance.reference import Reference
 
     spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)
