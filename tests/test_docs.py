@@ -92,7 +92,8 @@ def test_every_path_that_the_prose_names_exists_and_has_the_name_behind_the_colo
     assert sorted(place for place, files in found.items() if not files) == []
     for (path, name), [file, *_] in found.items():
         name = name.split(".")[-1]
-        assert name.isdigit() or name in file.read_text("utf-8"), f"{path}:{name}"
+        named = not name or name.isdigit() or name in file.read_text("utf-8")
+        assert named, f"{path}:{name}"
 
 
 def test_every_module_that_the_prose_names_exists():
