@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node absorption_vdf: Beer's law over one meter, since a surface has no
-// thickness.
+// Node absorption_vdf: Beer's law for one meter of the medium, since a surface has no thickness.
 
 #include "lib/medium.glsl"
 

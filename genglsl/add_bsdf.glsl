@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node add for BSDFs. The throughput 1 - E is negative if E exceeds 1.
+// Node add for BSDFs. The throughput 1 - E is negative if the albedo E exceeds 1.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node add for two media: coefficients add up.
+// Node add for media: coefficients add, transmittances multiply.
 
 #include "lib/medium.glsl"
 

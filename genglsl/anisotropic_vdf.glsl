@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node anisotropic_vdf: transmittance of one meter, with absorption and
-// scattering. Light scattered into the ray is ignored, and hence the anisotropy.
+// Node anisotropic_vdf: the transmittance of one meter that absorbs and scatters. The anisotropy
+// has no effect, because light scattered into the ray is ignored.
 
 #include "lib/medium.glsl"
 

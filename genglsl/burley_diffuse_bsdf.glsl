@@ -20,9 +20,9 @@ float burley_albedo_dir(float mu, float roughness)
 void burley_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
                          inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // the base keeps the share 1 - weight
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // share that reaches the layer below
 
-    // Disabled lobes cost nothing; negative weights are invalid and count as 0.
+    // A weight of 0 or less turns the lobe off.
     if (weight <= 0.0)
     {
         return;

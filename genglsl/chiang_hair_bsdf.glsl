@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Entry point and lobes of chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model.
 //
-// Roughness is at least (1e-8, 1e-4), square radian and radian: float32 has no narrower lobes, and
-// (0, 0) has no value. In the frame of the fiber, x runs along it and z along the normal.
+// The least roughness is 1e-8 rad^2 along the fiber and 1e-4 rad around it, because float32 has no
+// narrower lobes. In the local frame, x runs along the fiber, z along the normal.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
@@ -23,7 +23,7 @@ float chiang_hair_bessel(float x)
           + t * (-0.01647633 + t * 0.00392377)))))))) / sqrt(x);
 }
 
-// 2 v sinh(1 / v) exp(-1 / v). The series ends at the eighth power. Relative error: 3e-8.
+// 2 v sinh(1 / v) exp(-1 / v). If v >= 1, sinh is a series up to u^8. Relative error: 3e-8.
 float chiang_hair_norm(float v)
 {
     float u = 1.0 / v;
@@ -33,8 +33,8 @@ float chiang_hair_norm(float v)
                      * (1.0 + u2 / 6.0 * (1.0 + u2 / 20.0 * (1.0 + u2 / 42.0 * (1.0 + u2 / 72.0))));
 }
 
-// M_p of two directions (cosine, sine), by the distance of one from the other's mirror image: the
-// printed exponents would cancel. I_0 is even, so a tilted cosine may lose its sign.
+// M_p of two directions (cosine, sine). The published exponents would cancel, so the distance of
+// one direction from the mirrored other replaces them. I_0 is even, so a cosine may lose its sign.
 float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
 {
     float c = abs(inclined_i.x);
@@ -43,8 +43,8 @@ float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
            / chiang_hair_norm(v);
 }
 
-// Unsigned angle of a vector from the x axis, by an arc tangent of at most half the angle. It is a
-// polynomial (tools/fits/arc_tangent.py): built-in ones are off by 1e-6 and more.
+// Unsigned angle between a vector and the x axis, twice a polynomial (tools/fits/arc_tangent.py).
+// Built-in arc tangents are off by 1e-6 or more.
 float chiang_hair_angle(vec2 w)
 {
     vec2 a = abs(w);
@@ -58,7 +58,7 @@ float chiang_hair_angle(vec2 w)
     return w.x < 0.0 ? M_PI - angle : angle;
 }
 
-// N_p of the angle of a vector in the cross-section; it needs no wrapping.
+// N_p of the angle of a vector in the cross-section. The angle is in [0, pi].
 float chiang_hair_around(vec2 exit, float s)
 {
     float scale = sqrt(M_PI / 8.0) * s;
@@ -67,7 +67,7 @@ float chiang_hair_around(vec2 exit, float s)
     return fall * (1.0 + rest) / (scale * (1.0 + fall) * (1.0 + fall) * (1.0 - rest));
 }
 
-// F: [MaterialX2026], Dielectric Fresnel Equations, rearranged so that nothing cancels.
+// F: [MaterialX2026], Dielectric Fresnel Equations, rearranged to avoid cancellation.
 float chiang_hair_fresnel(float mu, float ior)
 {
     float gap = (ior - 1.0) * (ior + 1.0);
@@ -89,8 +89,8 @@ vec2 chiang_hair_product(vec2 a, vec2 b)
     return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
 }
 
-// Cosine and sine of alpha in [-pi/2, pi/2], by series at alpha / 2: built-in ones differ
-// (SwiftShader's are off by 1.9e-4). The series end at the ninth power. Error: 2e-9.
+// Cosine and sine of alpha in [-pi/2, pi/2], by series for alpha / 2 up to powers 10 and 9. Error:
+// 2e-9. Built-in functions may be off by 1.9e-4 (SwiftShader).
 vec2 chiang_hair_tilt(float alpha)
 {
     float x = 0.5 * alpha;
@@ -101,8 +101,8 @@ vec2 chiang_hair_tilt(float alpha)
     return chiang_hair_product(vec2(C, S), vec2(C, S));
 }
 
-// Terms of the view's cross-section: A_p, a column each for R, TT and TRT; A_p of TRRT+; the angles of the view
-// and of the refracted ray, as (cosine, sine).
+// Terms that depend on the view. The columns of A are A_p of R, TT and TRT; A_rest is A_p of TRRT+.
+// Angles of the view and of the refracted ray are (cosine, sine).
 struct ChiangHairSection
 {
     mat3 A;
@@ -125,28 +125,28 @@ ChiangHairSection chiang_hair_section(vec3 wo, float ior, vec3 absorption)
     vec3 TT = (1.0 - F) * (1.0 - F) * T;
     vec3 TRT = TT * F * T;
     section.A = mat3(vec3(F), TT, TRT);
-    section.A_rest = TRT * F * T / max(1.0 - F * T, 1e-7);  // the limit of 0 / 0 is 0
+    section.A_rest = TRT * F * T / max(1.0 - F * T, 1e-7);  // avoids 0 / 0 if F T = 1
     return section;
 }
 
-// Sum of the lobes, times pi. `tint` has a column each for R, TT and TRT.
+// Sum of the lobes times pi. The columns of `tint` are for R, TT and TRT.
 vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughness_TT, vec2 roughness_TRT, float ior,
                      float cuticle_angle, vec3 absorption)
 {
     ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
 
-    // The tilted light of R, and its azimuth from R's exit.
+    // The tilted inclination of the light, and the azimuth of the light from the exit of R.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));
-    vec2 back = alpha * vec2(1.0, -1.0);  // rotates by -alpha
+    vec2 back = alpha * vec2(1.0, -1.0);  // rotation by -alpha
     vec2 tilted = chiang_hair_product(inclined_i, chiang_hair_product(alpha, alpha));
     vec2 exit = vec2(dot(wi.yz, wo.yz), wi.z * wo.y - wo.z * wi.y);
     exit = chiang_hair_product(exit, chiang_hair_product(section.gamma_o, section.gamma_o));
-    // Rotates by pi - 2 gamma_t.
+    // Rotation by pi - 2 gamma_t.
     vec2 inside = -chiang_hair_product(section.gamma_t, section.gamma_t) * vec2(1.0, -1.0);
 
-    // Add R, TT and TRT, rotating the light after each.
+    // Add R, TT and TRT, and rotate the light after each lobe.
     vec3 total = vec3(0.0);
     for (int p = 0; p < 3; ++p)
     {
@@ -188,8 +188,8 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        // Exact for an untilted cuticle in a uniform environment. Otherwise R and TRT use the
-        // irradiance of the viewer's side, TT that of the far side, and TRRT+ the mean of the two.
+        // R and TRT use the irradiance on the viewer's side, TT that on the far side, and TRRT+ the
+        // mean. This is exact for an untilted cuticle in a uniform environment.
         ChiangHairSection section = chiang_hair_section(wo, ior, absorption_coefficient);
         vec3 both = 0.5 * tint[2] * section.A_rest;
         vec3 front = tint[0] * section.A[0] + tint[2] * section.A[2] + both;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node conductor_bsdf, an opaque lobe: scatter_mode 0 (R).
+// Entry point of the node conductor_bsdf, an opaque lobe that only reflects.
 
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
 
-// With index and extinction 0, which reflect everything, MaterialX's curve is 0 / 0 along the normal.
+// The least index. If index and extinction are 0, MaterialX's curve is 0 / 0 along the normal.
 #define CONDUCTOR_LEAST_INDEX 1e-8
 
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
@@ -29,10 +29,10 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, bsdf);
     }
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // the base keeps the share 1 - weight
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // share that reaches the layer below
 }
 
-// Overload for MaterialX before 1.39.5, without retroreflection.
+// Overload without retroreflection, for MaterialX before 1.39.5.
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
                     vec2 roughness, float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X,
                     int distribution, inout BSDF bsdf)

@@ -3,8 +3,8 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-// Cosine of half of a full angle in degrees, 1 - 2 sin^2 of a quarter of it. The sine is a series up to
-// the 13th power, accurate to 7e-10 in [0, pi / 2]; built-in cosines are off by up to 2e-4.
+// Cosine of half an opening angle in degrees: 1 - 2 sin^2(angle / 4). The sine is a series up to
+// the 13th power, accurate to 7e-10 in [0, pi / 2]; built-in cosines may be off by 2e-4.
 float conical_edf_cosine(float angle)
 {
     float u = angle * (M_PI / 720.0);
@@ -24,7 +24,8 @@ void conical_edf(ClosureData closureData, vec3 color, vec3 N, float inner_angle,
         float mu = max(dot(N, closureData.V), 0.0);
         float inner = conical_edf_cosine(inner_angle);
         float outer = conical_edf_cosine(outer_angle);
-        // Rounded cosines of close angles may be equal or swapped; 1e-8 is less than the step between two.
+        // Rounded cosines of close angles may be equal or swapped. 1e-8 is below the spacing of
+        // floats.
         if (outer_angle > inner_angle)
         {
             float t = clamp((mu - outer) / max(inner - outer, 1e-8), 0.0, 1.0);

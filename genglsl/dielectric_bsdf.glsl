@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node dielectric_bsdf. With ior 0 it reflects everything.
+// Entry point of the node dielectric_bsdf, which reflects everything if ior is 0.
 
 #include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_dielectric.glsl"
@@ -27,19 +27,19 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     microfacet_film(lobe, fd, F);
     if (ior < 1.0 && scatter_mode != 0 && !fd.airy)
     {
-        // Facets that reflect everything return the light that neither passes nor is in F.
+        // Light that is neither transmitted nor in F is reflected as by perfect mirrors.
         float rest = max((1.0 - passing.y) / lobe.albedo - F.visible.x, 0.0);
         F.value += rest;
         F.visible += rest;
         F.average = vec3(0.0);
         F.outside = F.visible;
-        fd.airy = true;  // sums an environment over facets that reflect everything, as under a film
+        fd.airy = true;  // sums an environment over perfect mirrors, as under a film
     }
     microfacet_bsdf(closureData, lobe, fd, F, max(tint, 0.0), weight, distribution, scatter_mode,
                     bsdf);
 }
 
-// Overload for MaterialX before 1.39.5, without retroreflection.
+// Overload without retroreflection, for MaterialX before 1.39.5.
 void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
                      float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 X, int distribution,
                      int scatter_mode, inout BSDF bsdf)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node layer for two lobes: the base gets 1 - E of the top, at least 0.
+// Node layer for two lobes. The base gets the throughput of the top, at least 0.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node mix for two media. Coefficients are mixed, so transmittances are mixed as
-// powers.
+// Node mix for media. Mixed coefficients mean a product of powers of the transmittances.
 
 #include "lib/medium.glsl"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node multiply for a BSDF and a color: light that is not scattered passes.
+// Entry point of the node multiply for a BSDF and a color. Light that is not scattered passes.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

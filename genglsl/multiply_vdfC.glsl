@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node multiply for a medium and a color: it scales the coefficients.
+// Node multiply for a medium and a color, which scales the coefficients.
 
 #include "lib/medium.glsl"
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node sheen_bsdf, and the lobe of Conty and Kulla.
+// Entry point of the node sheen_bsdf, and the lobes of both modes.
 //
-// Roughness is clamped to [1e-4, 1], the domain of the albedo fit; below, only grazing pairs reflect.
+// Mode 0 clamps roughness to [1e-4, 1], the domain of the albedo's fit. A narrower lobe only
+// reflects at grazing.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_sheen.glsl"
 #include "lib/conty_kulla_albedo.glsl"
 #include "lib/half_vector.glsl"
 
-// Logarithm of the squared sine of the half vector's angle, by whichever of sine and cosine does
-// not cancel. The series ends at the cube. Relative error: 2e-9.
+// Logarithm of the squared sine of the half vector's angle. If the cosine c is small, the result is
+// a series up to the eighth power of c. Relative error: 2e-9.
 float conty_kulla_log_sine(vec3 N, vec3 H)
 {
     float cosine = dot(N, H);
@@ -19,7 +20,7 @@ float conty_kulla_log_sine(vec3 N, vec3 H)
                      : log(max(dot(sine, sine), 1e-30));
 }
 
-// [MaterialX2026], Conty-Kulla Sheen Equations, at unit color.
+// [MaterialX2026], Conty-Kulla Sheen Equations, for color 1.
 float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
 {
     float shape = 0.5 / roughness;
@@ -27,8 +28,8 @@ float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
     return density / (4.0 * (mu_i + mu_o - mu_i * mu_o));
 }
 
-// [MaterialX2026], Zeltner Sheen Model, times the cosine, at unit albedo. The frame comes from a
-// cross product: for a view along the normal, wo - mu_o N would be a rounding error.
+// [MaterialX2026], Zeltner Sheen Model, times the cosine, for albedo 1. The frame comes from a
+// cross product, since wo - mu_o N is only a rounding error if wo is along the normal.
 float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 {
     vec3 Y = cross(N, wo);
@@ -48,7 +49,7 @@ float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
                 int mode, inout BSDF bsdf)
 {
-    // Disabled lobes cost nothing; negative weights are invalid and count as 0.
+    // A weight of 0 or less turns the lobe off.
     if (weight <= 0.0)
     {
         return;
@@ -58,13 +59,14 @@ void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughne
     vec3 wi = closureData.L;
     N = mx_forward_facing_normal(N, wo);
 
-    // With both directions at grazing, cosines of 0 would divide by 0.
+    // If both cosines were 0, the BRDF would divide by 0.
     float mu_o = clamp(dot(N, wo), M_FLOAT_EPS, 1.0);
     float rough = clamp(roughness, mode == 0 ? 1e-4 : 0.01, 1.0);
     float albedo = mode == 0 ? conty_kulla_albedo_dir(mu_o, rough)
                              : mx_zeltner_sheen_dir_albedo(mu_o, rough);
 
-    // Light that the color removes is absorbed; light that the base transmits passes the sheen, too.
+    // Light that the color removes is absorbed. Light that the base transmits also passes the
+    // sheen.
     bsdf.throughput = vec3(max(1.0 - albedo * weight, 0.0));
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)

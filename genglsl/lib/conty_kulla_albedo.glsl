@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Directional albedo of the Conty-Kulla sheen at full reflectance.
 
-// min(E, 1) of [MaterialX2026], sheen_bsdf: below a roughness of 0.21 the lobe gains energy at
-// grazing.
+// min(E, 1) of [MaterialX2026], sheen_bsdf. E exceeds 1 at grazing if roughness is below 0.21.
 //   E = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,  s = sqrt(r), z = sqrt(mu / (mu + s))
 // Source: tools/fits/conty_kulla_albedo.py. Domain: mu and roughness in [1e-4, 1]. Largest absolute error: 1.5e-3.
 float conty_kulla_albedo_dir(float mu, float roughness)

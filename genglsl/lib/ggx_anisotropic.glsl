@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Isotropic GGX facets that replace anisotropic ones in fits. wo is in the frame of tangent, bitangent and normal.
-// Source and equations: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1], one up to 50 times the other,
-// cosines from 0.01. Largest relative error of E_ss: 2.5e-2; of a dielectric's albedo, absolute: 3.4e-2.
+// Isotropic GGX facets that replace anisotropic ones in fits. wo is in the frame of the tangent.
+// Source and equations: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1] with a ratio up
+// to 50, cosines from 0.01. Largest relative error of E_ss: 2.5e-2. Largest absolute error of a
+// dielectric's albedo: 3.4e-2.
 
 #include "ggx_albedo.glsl"
 
-// Cosine, alpha and factor for 1 - E_ss; `visible` is cosine and alpha for averages over the visible facets.
+// Cosine, alpha and factor for 1 - E_ss. `visible` holds cosine and alpha for averages over visible
+// facets.
 vec3 ggx_facets(vec3 wo, vec2 roughness, out vec2 visible)
 {
     vec2 a2 = roughness * roughness;

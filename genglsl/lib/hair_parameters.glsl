@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Roughness and absorption of hair from artistic parameters.
 
-// Least roughness and color: a lobe of width 0 would divide by 0.
+// Least roughness and color, since a lobe of width 0 would divide by 0.
 #define HAIR_LEAST 1e-3
 
-// Share of light that remains at the largest concentration of melanin.
+// The least value of 1 - concentration of melanin.
 #define HAIR_LEAST_SHARE 1e-4
 
-// Least color of a pigment, with a finite logarithm.
+// Least color of a pigment, so that its logarithm is finite.
 #define HAIR_LEAST_COLOR 1e-30
 
 // [MaterialX2026], Hair Roughness Conversion Equations: the longitudinal variance v.
@@ -25,7 +25,7 @@ float hair_logistic(float azimuthal)
     return a * (0.265 + 1.194 * a) + 5.372 * pow(a, 22.0);
 }
 
-// Absorption of a mix of both melanins: [dEon2011], with the amounts used in practice.
+// Absorption of a mix of melanins, -log(1 - concentration) in all: [dEon2011].
 vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelanin, vec3 pheomelanin)
 {
     float melanin = -log(max(1.0 - max(concentration, 0.0), HAIR_LEAST_SHARE));

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reflectances of a microfacet lobe under a thin film: F_airy at the half vector, its average F_ss over the hemisphere,
-// and its average over the visible facets. Each average is a sum over three nodes; each damps waves over its width.
+// Reflectances of a microfacet lobe under a thin film: F_airy at the half vector, and the averages
+// of F_airy over the hemisphere (F_ss) and over visible facets. An average is a sum over three
+// nodes (cosines). Waves are damped over a node's width.
 
 #include "microfacet_lobe.glsl"
 #include "thin_film.glsl"
 
-// F_ss: cosine, weight and width of its nodes. Source: tools/fits/thin_film_nodes.py. Domain: films up to 1000 nm
-// with index in [1, 2.5]. Largest error: 3.61e-2; 4.4e-3 for a vanishing film.
+// Cosine, weight and width of the nodes of F_ss. Source: tools/fits/thin_film_nodes.py. Domain:
+// films up to 1000 nm with index in [1, 2.5]. Largest error: 3.61e-2, or 4.4e-3 for a vanishing
+// film.
 #define FILM_AVERAGE_1 vec3(0.17999, 0.10982, 0.19938)
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
-// Nodes x, 0 and -x of Gauss's rule for a semicircle over [-1, 1], with weights (1 - x^2) / 2. Each node covers a third
-// of the reach on either side.
+// Gauss's rule for a semicircle over [-1, 1] has nodes x, 0 and -x with weights (1 - x^2) / 2. Each
+// node has a third of the half width.
 #define FILM_OUTER 0.70710678
 
-// Cosine, width and weights of a node: 0 to 2 are for the visible facets, 3 to 5 for F_ss, 6 is the half vector.
+// Cosine, width and two weights of a node. Nodes 0 to 2 are for visible facets, 3 to 5 are for
+// F_ss, and 6 is the half vector.
 vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 {
     float x = FILM_OUTER * float(i - 1);
@@ -28,8 +31,8 @@ vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
     return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
-// Reflectances under a film. Unused ones are skipped: the value in an environment; a metal's visible facets in direct
-// light, since nothing lies below it.
+// Reflectances under a film. Unused ones are skipped: the value in an environment, and the average
+// over a metal's visible facets in direct light, since metal is opaque.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     F.outside = vec3(1.0);
@@ -38,9 +41,9 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
         float mu = lobe.visible.x;
         float alpha = lobe.visible.y;
         float y = alpha / (alpha + 0.2);
-        // Visible facets: mean cosine, reach and bend of the nodes. Same source and films as for F_ss.
-        // Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error: 7.7e-2, in total reflection by a film of index
-        // 1.16 on a metal of lower index. Outside the domain: 0.14.
+        // Mean cosine, half width and bend of the nodes for visible facets, from the source of
+        // F_ss. Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error: 7.7e-2, in total
+        // reflection by a film of index 1.16 on a metal of lower index. Outside the domain: 0.14.
         vec3 C = vec3(3.252, 0.32298, 0.14542)
             + y * (vec3(-0.91173, 3.3428, 0.030955) + y * (vec3(-4.1529, -4.255, -0.22576)
             + y * vec3(1.7917, 0.51298, -0.22374)))
@@ -49,7 +52,7 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
             + mu * (vec3(-7.6708, -2.597, -1.7185) + y * vec3(8.1838, 3.5172, 2.1385)
             + mu * vec3(0.0010818, -0.34239, 0.018052)));
         float s = alpha / sqrt(mu + alpha);
-        vec3 facets = vec3(mu + s * s * C.x, s * C.y, C.z);  // mean cosine, reach and bend of the nodes
+        vec3 facets = vec3(mu + s * s * C.x, s * C.y, C.z);
         bool is_lit = lobe.closure == CLOSURE_TYPE_REFLECTION;
         int i = is_lit && fd.model == FRESNEL_MODEL_CONDUCTOR ? 3 : 0;
         int end = is_lit ? 7 : 6;

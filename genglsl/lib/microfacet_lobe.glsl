@@ -6,12 +6,13 @@
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
-// Least index for MaterialX's curve, which is 0/0 along the normal if the index is lost next to 1 in float32.
+// Least index. A smaller one is lost next to 1 in float32, and MaterialX's curve is 0/0 along the
+// normal.
 #define MICROFACET_LEAST_INDEX 1e-3
 
 #define MICROFACET_MIRROR_INDEX 1e8
 
-// The lobe at one direction wo: [MaterialX2026], Microfacet Model.
+// The lobe for one view direction wo: [MaterialX2026], Microfacet Model.
 struct MicrofacetLobe
 {
     vec3 wo;
@@ -28,8 +29,9 @@ struct MicrofacetLobe
     int closure;
 };
 
-// A Fresnel curve's value at the half vector, its cosine-weighted average over the hemisphere, F_ss, and its average
-// over the visible facets, weighted by D G_2 / (4 mu_o). `outside` multiplies MaterialX's environment.
+// Fresnel reflectance: the value at the half vector, F_ss (the cosine-weighted average over the
+// hemisphere), and the average over visible facets, weighted by D G_2 / (4 mu_o). `outside`
+// multiplies MaterialX's environment.
 struct MicrofacetFresnel
 {
     vec3 value;
@@ -38,14 +40,15 @@ struct MicrofacetFresnel
     vec3 outside;
 };
 
-// Whether a lobe does not reflect: its weight is 0 or less, or it only transmits (scatter_mode 1, T; 0 is R, 2 is RT).
+// Whether a lobe is off: its weight is 0 or less, or it only transmits (scatter_mode 1) while
+// reflection is asked.
 bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     bool transmission = closureData.closureType == CLOSURE_TYPE_TRANSMISSION;
     return weight <= 0.0 || (scatter_mode == 1 && !transmission);
 }
 
-// A direction in the frame of tangent, bitangent and normal.
+// A direction in the frame of X and N.
 vec3 microfacet_local(MicrofacetLobe lobe, vec3 w)
 {
     return vec3(dot(w, lobe.X), dot(w, cross(lobe.N, lobe.X)), dot(w, lobe.N));
@@ -57,7 +60,7 @@ float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
     return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
 }
 
-// Clamps the divisors, cosines and alphas. Retroreflection mirrors wo about the normal.
+// Cosines and alphas are clamped as divisors. Retroreflection mirrors wo about the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
 {
@@ -84,8 +87,9 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     return lobe;
 }
 
-// D G_2 / (4 mu_o), the value of perfectly reflecting facets times mu_i; 0 below the horizon. [MaterialX2026],
-// Height-Correlated Smith Masking-Shadowing of July 2026: G_2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o).
+// D G_2 / (4 mu_o): the BRDF of perfect mirrors times mu_i, or 0 below the horizon. G_2 = 2 mu_o
+// mu_i / (l_o mu_i + l_i mu_o): [MaterialX2026], Height-Correlated Smith Masking-Shadowing, July
+// 2026.
 float microfacet_lossless(MicrofacetLobe lobe)
 {
     float mu_i = clamp(dot(lobe.N, lobe.wi), 0.0, 1.0);
@@ -93,7 +97,8 @@ float microfacet_lossless(MicrofacetLobe lobe)
     return mx_ggx_NDF(microfacet_local(lobe, lobe.wh), lobe.roughness) * mu_i / (2.0 * smith);
 }
 
-// Light of an environment. MaterialX's sum masks by the mean alpha. Under a film, it sums perfectly reflecting facets.
+// Light of an environment. MaterialX's sum masks by the mean alpha. Under a film, all facets are
+// perfect mirrors.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     fd.ior = fd.model == FRESNEL_MODEL_DIELECTRIC ? max(fd.ior, MICROFACET_LEAST_INDEX) : fd.ior;
@@ -108,8 +113,9 @@ vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData f
     return max(mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, fd), 0.0);
 }
 
-// Response and throughput. [MaterialX2026], Energy Compensation: 1 + F_ss (1 - E_ss) / E_ss. Light that a tint removes
-// is absorbed: [MaterialX2026a], Vertical-Layering Transmittance.
+// Response and throughput, scaled by 1 + F_ss (1 - E_ss) / E_ss: [MaterialX2026], Energy
+// Compensation. Light that a tint removes is absorbed: [MaterialX2026a], Vertical-Layering
+// Transmittance.
 void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                      float weight, int distribution, inout BSDF bsdf)
 {

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light through a microfacet surface, and response and throughput of a lobe that may transmit.
+// Light through a microfacet surface, and response and throughput of lobes that may transmit.
 
 #include "microfacet_film.glsl"
 
-// Light through a surface that transmits `share`. The view is refracted twice, as by a solid sphere. If MaterialX
-// renders transmission as opacity, this is the tint.
+// Light through a surface that transmits `share`. The view is refracted twice, as by a solid
+// sphere. If MaterialX renders transmission as opacity, the result is the tint.
 //
-// MaterialX squares the exit cosine as 1 - n^2 (1 - q^2), with the cosine q inside. If that rounds below 0, no light
-// leaves: 0 / 0. A view longer by d adds 8 d q^2 / n^2, here 8e-6 n^2, three times the roundings of seven operations.
-// Near n = 1 and above 4, d is too large: rough surfaces use n = 1.001 and 4; a smooth one keeps n above 4, but with
-// a larger cosine.
+// MaterialX's squared exit cosine is 1 - n^2 (1 - q^2), where q is the cosine inside. Rounded below
+// 0, it causes 0 / 0. A view longer by d adds 8 d q^2 / n^2, at grazing 8e-6 n^2, three times the
+// rounding of seven operations. Near n = 1 and above 4, d is too large: n is clamped to [1.001, 4].
+// Smooth surfaces keep n above 4, but with a larger cosine.
 //
-// A Schlick curve that is F0 except at grazing transmits the share in both sums; A and B are MaterialX's fits:
+// A Schlick curve that is F0 except at grazing transmits `share` in both sums. A and B are
+// MaterialX's fits.
 //   sampled: (1 - F0) / G_1(mu)           prefiltered: 1 - (A F0 + B F90)
 vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData fd, vec3 share, vec3 tint)
 {
@@ -38,7 +39,7 @@ vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData f
 #endif
     fd.F82 = vec3(1.0);
     vec3 AB = mx_ggx_dir_albedo(mu, lobe.alpha, vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    fd.F90 = (1.0 - share - AB.x * fd.F0) / max(AB.y, 1e-6);  // finite without a table of fits
+    fd.F90 = (1.0 - share - AB.x * fd.F0) / max(AB.y, 1e-6);  // finite if AB is 0
     fd.exponent = 1e9;
     return mx_surface_transmission(lobe.N, wo, lobe.X, lobe.roughness, distribution, fd, tint);
 }
@@ -49,7 +50,8 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, bsdf);
     if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
     {
-        // As opacity, a lobe that only transmits passes all light; the layer above subtracts its reflection.
+        // As opacity, a lobe that only transmits passes all light, since the layer above subtracts
+        // reflection.
         vec3 passed = max(1.0 - F.visible * mix(F.average, vec3(1.0), lobe.albedo), 0.0);
         bool below = scatter_mode == 1;
         bsdf.response = microfacet_transmitted(lobe, distribution, fd, below ? passed : vec3(1.0), tint)

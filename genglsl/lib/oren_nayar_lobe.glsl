@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Response of a rough diffuse lobe for the nodes' entry points: EON with energy_compensation,
-// qualitative Oren-Nayar without it. The models are in eon.glsl.
+// Response of a rough diffuse lobe for two nodes. With energy_compensation, the model is EON,
+// otherwise qualitative Oren-Nayar. The models are in eon.glsl.
 //
-// Inputs are not clamped: outside [0, 1] the same formulas apply. Results are finite for
+// Inputs are not clamped. Outside [0, 1] the same formulas apply, and results are finite for
 // roughness in [-1, 10] and colors up to 1. A negative weight counts as 0.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
@@ -12,9 +12,9 @@
 void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float roughness,
                      vec3 N, bool energy_compensation, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // the base keeps the share 1 - weight
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // share that reaches the layer below
 
-    // Disabled lobes cost nothing; negative weights are invalid and count as 0.
+    // A weight of 0 or less turns the lobe off.
     if (weight <= 0.0)
     {
         return;

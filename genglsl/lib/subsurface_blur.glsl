@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cosine of a distant light, blurred over a unit sphere by the normalized diffusion profile.
 
-// Gauss's rule over [-1, 1]: positive nodes and weights.
+// Positive nodes and weights of Gauss's rule over [-1, 1].
 #define SUBSURFACE_RINGS 6
 #define SUBSURFACE_GAUSS1 vec2(0.93246951, 0.17132449)
 #define SUBSURFACE_GAUSS2 vec2(0.66120939, 0.36076157)
 #define SUBSURFACE_GAUSS3 vec2(0.23861919, 0.46791393)
 
-// Means of max(cos(theta), 0) over the circles at the ends of chords from a point with cosine mu.
+// Means of max(cos(theta), 0) over circles on the sphere, at distances `chord` from a point with
+// cosine mu.
 vec3 subsurface_ring(float mu, vec3 chord)
 {
     vec3 squared = chord * chord;
@@ -20,15 +21,15 @@ vec3 subsurface_ring(float mu, vec3 chord)
     return max(along, 0.0) + more / 3.14159265358979;
 }
 
-// The blurred cosine; `reach` is the mean free path over the radius of the sphere. With
-// t = exp(-r / (3 reach)), the profile's share of light is (1 + t^2) dt.
+// The blurred cosine. `reach` is the mean free path divided by the radius. In terms of t = exp(-r /
+// (3 reach)), the profile is (1 + t^2) dt.
 vec3 subsurface_blur(float mu, vec3 reach)
 {
     vec3 least = exp(-2.0 / (3.0 * max(reach, 1e-6)));  // t at r = 2, the diameter
     vec3 light = vec3(0.0);
     vec3 total = vec3(0.0);
 
-    // A plane needs one ring. A count that depends on an input keeps compilers from unrolling all rings.
+    // A plane needs one ring. The count depends on an input, so compilers do not unroll the loop.
     int rings = max(reach.x, max(reach.y, reach.z)) > 0.0 ? SUBSURFACE_RINGS : 1;
     for (int i = 0; i < rings; i++)
     {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Combinations of closures for path tracers: values are summed; one of two lobes is drawn.
+// Combined closures for path tracers. Values are summed; a draw chooses one of two lobes.
 
 #include "lib/questions.glsl"
 #include "../layer_bsdf.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The diffuse lobes for path tracers: EON has its own sampler, the rest use a cosine.
+// Diffuse lobes for path tracers. EON has a sampler, the other lobes use a cosine.
 
 #include "lib/questions.glsl"
 #include "../oren_nayar_diffuse_bsdf.glsl"

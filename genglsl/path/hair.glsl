@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hair for path tracers. M_p is drawn as in [dEon2013]; N_p, a logistic cut at +-pi, by its inverse distribution. The
-// cuticle tilts the light, so draws are tilted back, perhaps past the end of the fiber.
+// Hair for path tracers. M_p is drawn as in [dEon2013], N_p (a logistic cut at +-pi) by its inverse
+// distribution. The cuticle tilts the light, so draws are tilted back, perhaps past the end of the
+// fiber.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"
 
-// The lobes at one view: mean weight, roughness, and, as complex numbers, the tilt of the light by the cuticle and the
-// azimuth of the exit. The last, TRRT+, is uniform in azimuth.
+// The lobes for one view: mean weights, roughness and, as complex numbers, the tilt of the light by
+// the cuticle and the azimuth of the exit. The last lobe, TRRT+, is uniform in azimuth.
 struct PathHair
 {
     vec4 weight;
@@ -15,7 +16,7 @@ struct PathHair
     vec2 exit[4];
 };
 
-// Azimuths are the angles of z + i y.
+// An azimuth is the angle of z + i y.
 PathHair path_hair(vec3 wo, vec3 tint_R, vec3 tint_TT, vec3 tint_TRT, float ior, vec2 roughness_R, vec2 roughness_TT,
                    vec2 roughness_TRT, float cuticle_angle, vec3 absorption)
 {
@@ -50,9 +51,9 @@ vec2 path_hair_untilted(vec2 tilted, vec2 tilt)
     return chiang_hair_product(tilted, tilt * vec2(1.0, -1.0));
 }
 
-// Density of wi over all lobes. The model folds tilted directions at the end of the fiber, so up to two directions of
-// light share a tilted direction; a draw chooses between them in proportion to their cosines. If there are none, the
-// draw passes the end of the fiber to the opposite azimuth.
+// Density of wi over all lobes. The model folds tilted directions at the end of the fiber, so two
+// directions of light may share a tilted direction. A draw chooses one in proportion to the
+// cosines. If none exists, the draw passes the end of the fiber to the opposite azimuth.
 float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
 {
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
@@ -74,7 +75,8 @@ float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
     return sum / dot(hair.weight, vec4(1.0));
 }
 
-// The high bits of two random numbers draw the inclination, their low bits the azimuth; a third number draws the lobe.
+// The third random number draws the lobe. High bits of the others draw the inclination, low bits
+// the azimuth.
 vec3 path_hair_draw(PathHair hair, vec3 wo)
 {
     float left = path_u.z * dot(hair.weight, vec4(1.0));

@@ -7,7 +7,7 @@ struct Point
     vec3 normal;   // shading normal, unit
     vec3 tangent;  // unit, orthogonal to normal
     vec2 texcoord;
-    bool inside;   // whether wo lies inside a solid of this material and refracts in reverse
+    bool inside;   // whether wo lies inside a solid of this material
 };
 
 #define PATH_NOTHING 0
@@ -21,16 +21,16 @@ vec3 path_wi;
 vec3 path_u;
 bool path_inside;
 bool path_thin;
-float path_eta; // index below the lobe over index above
-vec3 path_facet; // normal of the facet that is drawn or that turns wo into wi
-vec3 path_inner; // view from the denser side: share that a dielectric passes, E_ss, mean F of visible facets
-float path_reversed; // G_1 outside over G_1 inside; 0 if the facet passes no light
+float path_eta; // index below the lobe divided by index above
+vec3 path_facet; // normal of the facet, drawn or derived from wo and wi
+vec3 path_inner; // denser side: share that a dielectric passes, E_ss, mean F of visible facets
+float path_reversed; // G_1 outside / G_1 inside, or 0 if the facet passes no light
 vec3 path_root; // response of the last closure, the root of the material
 
 #define u_numActiveLightSources 1
 #define u_refractionTwoSided false
 
-// Octahedral map of unit vectors to |x| + |y| + |z| = 1; the lower half is folded outwards.
+// Octahedral map of unit vectors to |x| + |y| + |z| = 1. The lower half is folded outwards.
 vec2 path_fold(vec2 w)
 {
     return vec2(w.x < 0.0 ? abs(w.y) - 1.0 : 1.0 - abs(w.y), w.y < 0.0 ? abs(w.x) - 1.0 : 1.0 - abs(w.x));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions for path tracers: docs/path_tracing.md. Directions are unit vectors that leave the point.
+// Functions for path tracers (docs/path_tracing.md). Directions are unit vectors that leave the
+// point.
 
 void path_ask(int asked, Point p, vec3 wo, vec3 wi, vec3 u)
 {
@@ -22,15 +23,17 @@ vec3 material_evaluate(Point p, vec3 wo, vec3 wi)
     return path_root * path_out.a;
 }
 
-// Density in 1/sr with which material_sample draws wi; its integral is the share of draws that are not lost.
+// Density in 1/sr of the draws of material_sample. The integral is the share of draws that are not
+// lost.
 float material_pdf(Point p, vec3 wo, vec3 wi)
 {
     path_ask(PATH_PDF, p, wo, wi, vec3(0.0));
     return path_root.x > 0.0 ? path_root.y * path_out.a : 0.0;
 }
 
-// Draws wi by three random numbers in [0, 1); `weight` is f cos(theta_i) / pdf. False if the path ends.
-// If light passes straight through, wi is -wo and pdf is 0, since no other call can find that direction.
+// Draws wi by three random numbers in [0, 1). `weight` is f cos(theta_i) / pdf. Returns false if
+// the path ends. If light passes straight through, wi is -wo and pdf is 0, since no other call
+// finds -wo.
 bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out float pdf)
 {
     wi = -wo;

@@ -1,36 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// The microfacet lobes for path tracers, drawn by visible normals. Macros replace three functions of
+// Microfacet lobes for path tracers, drawn by visible normals. Macros replace three functions of
 // microfacet_lobe.glsl that eonlib's nodes call.
 //
-// A facet is drawn first; then it reflects or refracts in proportion to the light it would return, so no draw weighs
-// much more than the lobe's albedo. Light that is not reflected is transmitted: all visible facets refract the same
-// share, as in MaterialX's own transmission of an environment.
+// A facet is drawn first. It reflects or refracts in proportion to the returned light, so no draw
+// weighs much more than the lobe's albedo. Light that is not reflected is transmitted. All visible
+// facets refract the same share, as in MaterialX's environment.
 //
-// Inside a solid a facet may lose its light: it neither reflects into the solid nor refracts out of it. Its partner,
-// its image if the spherical cap of visible normals [Dupuy2023] is turned upside down, replaces it. That map keeps
-// areas and is its own inverse, so a facet whose partner loses its light is drawn exactly twice as often.
+// Inside a solid, a facet loses its light if it neither reflects into the solid nor refracts out.
+// Such a facet is replaced by its partner: its image if the spherical cap of visible normals
+// [Dupuy2023] is turned upside down. This map keeps areas and is its own inverse, so a facet whose
+// partner loses light is drawn exactly twice as often.
 //
-// Light into a thinner medium reverses the paths of light that comes from it. If P is the share that passes from
-// outside and p the density of refracted directions, then n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o. With p by visible
-// normals this is
+// Light into a thinner medium takes paths out of that medium in reverse. If P is the share that
+// passes from outside and p the density of refracted directions, n^2 mu_i T(wi, wo) = P(wo) p(wo,
+// wi) mu_o. Since p follows from visible normals,
 //   T(wi, wo) = P(wo) G_1(wo) / G_1(wi) p(wi, wo).
-// The rest is reflected: first once, by the curve from outside with F = 1 beyond the critical angle; what remains, by
-// facets that reflect everything.
+// Other light is reflected: a part by the Fresnel curve from outside (F = 1 beyond the critical
+// angle), the remainder by perfect mirrors.
 
 #include "lib/questions.glsl"
 #include "../lib/microfacet_transmission.glsl"
 #include "../lib/fresnel_dielectric.glsl"
 
-// Narrower lobes vanish in the rounding of directions; smooth surfaces use this alpha.
+// Smooth surfaces use this alpha, since the rounding of directions hides narrower lobes.
 #define PATH_LEAST_ALPHA 1e-4
 
-// Nearer to index 1, a refracted direction does not determine its facet.
+// Nearer to index 1, a refracted direction does not determine the facet.
 #define PATH_LEAST_BEND 1e-3
 
-// A fitted albedo may be 0 though some facets reflect; this is the least share by which a lobe is drawn.
+// Least share by which a lobe is drawn, since a fitted albedo may be 0 though some facets reflect.
 #define PATH_LEAST_SHARE 1e-3
 
-// Index below over index above.
+// Index below the lobe divided by index above.
 float path_eta_of(float ior)
 {
     float n = path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
@@ -42,13 +43,14 @@ vec3 path_mirrored(vec3 w, vec3 N)
     return w - 2.0 * dot(w, N) * N;
 }
 
-// Half a turn about N. It turns wo into the wo of a retroreflective lobe.
+// w after half a turn about N, for retroreflective lobes.
 vec3 path_turned(vec3 w, vec3 N)
 {
     return 2.0 * dot(w, N) * N - w;
 }
 
-// The facet that reflects wo into wi, or refracts it below the surface; a thin wall bends nothing.
+// The facet that reflects wo into wi, or refracts wo into a wi below. A thin wall does not bend
+// light.
 vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
 {
     bool through = dot(N, wi) < 0.0;
@@ -60,7 +62,7 @@ vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
     return normalize(wo + (through ? path_mirrored(wi, N) : wi));
 }
 
-// Direction of wo refracted by the facet H; N in total reflection.
+// Direction of wo refracted by the facet H, or N in total reflection.
 vec3 path_refracted(vec3 wo, vec3 H, vec3 N)
 {
     float cosine = dot(wo, H);
@@ -73,13 +75,13 @@ bool path_is_denser()
     return path_eta < 1.0 && !path_thin;
 }
 
-// Whether facet H sends light nowhere.
+// Whether facet H loses its light.
 bool path_is_lost(MicrofacetLobe lobe, vec3 H)
 {
     return dot(lobe.N, path_turned(lobe.wo, H)) <= 0.0 && dot(lobe.N, path_refracted(lobe.wo, H, lobe.N)) >= 0.0;
 }
 
-// The partner of path_facet. Heights z on the cap are from -wo.z to 1.
+// The partner of path_facet. Heights z on the cap are in [-wo.z, 1].
 vec3 path_partner(MicrofacetLobe lobe)
 {
     vec3 stretch = vec3(lobe.roughness, 1.0);
@@ -90,9 +92,9 @@ vec3 path_partner(MicrofacetLobe lobe)
     return path_world(vec3(flat_cap + wo.xy, max(z + wo.z, M_FLOAT_EPS)) * stretch, lobe.X, lobe.N);
 }
 
-// On the denser side a lobe uses the averages of the outer direction to which its facet refracts. In values of
-// reflection it only serves to compare a curve with a dielectric's, so any will do: that of a smooth surface, with a
-// cosine of at least 0.5.
+// On the denser side, a lobe uses the averages for the outer direction to which the facet refracts.
+// In values of reflection, any outer direction will do to compare a curve with a dielectric's. The
+// code uses that of a smooth surface, with a cosine of at least 0.5.
 void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
 {
     bool below = dot(lobe.N, lobe.wi) < 0.0;
@@ -142,8 +144,8 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     return lobe;
 }
 
-// Density of wi by visible normals: G_1 D / (4 mu_o) for reflection. For refraction, the Jacobian of h by wi is
-// n^2 |wi . h| / |wo + n wi|^2: [Walter2007], Eq. (17).
+// Density of wi for visible normals: G_1 D / (4 mu_o) for reflection. The Jacobian dh / dwi of
+// refraction is n^2 |wi . h| / |wo + n wi|^2: [Walter2007], Eq. (17).
 float path_facet_pdf(MicrofacetLobe lobe, bool through)
 {
     if ((dot(lobe.N, lobe.wi) < 0.0) != through)
@@ -166,7 +168,7 @@ float path_facet_pdf(MicrofacetLobe lobe, bool through)
     return cosine_o > 0.0 && cosine_i > 0.0 ? 2.0 * visible * cosine_o * jacobian : 0.0;
 }
 
-// G_2 / G_1, the unshadowed share of the light that path_facet reflects; 0 below the horizon.
+// G_2 / G_1, the unshadowed share of light that path_facet reflects, or 0 below the horizon.
 float path_unshadowed(MicrofacetLobe lobe)
 {
     vec3 wi = path_turned(lobe.wo, path_facet);
@@ -175,7 +177,7 @@ float path_unshadowed(MicrofacetLobe lobe)
     return mu_i * (lobe.mu_o + stretched) / (stretched * mu_i + microfacet_stretched(lobe, wi) * lobe.mu_o);
 }
 
-// The direction into which the drawn facet reflects or refracts, packed.
+// The packed direction into which the drawn facet reflects or refracts.
 vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 {
     vec3 H = path_facet;
@@ -192,8 +194,9 @@ vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                           float weight, int distribution, int scatter_mode, inout BSDF bsdf)
 {
-    // 0: reflection, 1: transmission, 2: both. A lobe that only transmits also draws reflected light, since it lies
-    // below a lobe that reflects; without one, such draws weigh nothing.
+    // scatter_mode: 0 reflects, 1 transmits, 2 does both. A lobe that only transmits also draws
+    // reflected light, since it lies below a reflecting lobe. Without such a lobe, the draws have
+    // weight 0.
     vec3 scale = tint * weight;
     vec3 factor = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
     vec3 albedo = lobe.albedo * F.visible * factor;
@@ -202,7 +205,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     bool valued = path_asked == PATH_VALUE;
     if (path_is_denser())
     {
-        vec3 curve = vec3(1.0); // transmittance over a dielectric's
+        vec3 curve = vec3(1.0); // transmittance / a dielectric's
         if (valued && !below)
         {
             float n = 1.0 / path_eta;
@@ -219,7 +222,8 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     }
     if (scatter_mode != 1)
     {
-        // In draws the lobe below keeps its full weight: few facets may refract the view, but they must be drawn.
+        // For draws, the lobe below keeps its full weight, so that the few facets that refract the
+        // view are drawn.
         bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * weight, 0.0);
         bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }
@@ -251,7 +255,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     path_microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, 0, bsdf);
 }
 
-// Unlike microfacet_is_off, ignores closureType.
+// Replaces microfacet_is_off, but ignores closureType.
 bool path_microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     return weight <= 0.0;

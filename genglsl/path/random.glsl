@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers for path tracers without a generator.
+// Random numbers for path tracers that have no generator.
 
-// One round of the generator below.
+// One round of pcg4d.
 uvec4 path_mixed(uvec4 v)
 {
     v.x += v.y * v.w;
@@ -11,7 +11,8 @@ uvec4 path_mixed(uvec4 v)
     return v;
 }
 
-// pcg4d of [Jarzynski2020]: random numbers of 24 bits in [0, 1) from counters, such as those of pixel, pass and bounce.
+// pcg4d of [Jarzynski2020]: random numbers of 24 bits in [0, 1) from counters, such as pixel, pass
+// and bounce.
 vec4 path_random(uvec4 counters)
 {
     uvec4 v = path_mixed(counters * 1664525u + 1013904223u);

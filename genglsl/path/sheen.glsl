@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sheen for path tracers. Zeltner's lobe, a linearly transformed cosine, is drawn by its own map; Conty and
-// Kulla's, brightest at the horizon, uniformly by solid angle.
+// Sheen for path tracers. Zeltner's lobe, a linearly transformed cosine, is drawn by the transform.
+// Conty and Kulla's lobe, brightest at the horizon, is drawn uniformly.
 
 #include "lib/questions.glsl"
 #include "../sheen_bsdf.glsl"

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exact importance sampling of EON with two random numbers, no table and no iteration.
 //
-// eon_sample -> wi and eon_pdf, the density of wi in 1/sr; directions and random numbers are as
-// in ltc_sampling. On the disk below the hemisphere, with wo at azimuth 0, EON is the sum of four
-// parts: docs/sampling.md. v is a random number in [0, 1); mu_o and S_o are cosine and sine of wo.
+// eon_sample draws wi, and eon_pdf is the density of wi in 1/sr. Directions and random numbers are
+// as in ltc_sampling. On the disk below the hemisphere, with wo at azimuth 0, EON is the sum of
+// four parts: docs/sampling.md. v is a random number in [0, 1); mu_o and S_o are cosine and sine of
+// wo.
 
 #include "ltc_sampling.glsl"
 
 // The least cosine of a sample.
 #define EON_HORIZON (1.0 / 16777216.0)
 
-// Inverse distributions of two parts of EON. Source: tools/fits/eon_sampling.py. Domain: random numbers
-// and their roots in [0, 1]. Largest relative error of the density: 1.27e-5 and 5.7e-6; of ROOT,
-// the inverse of m = y Q(y): 1.8e-7.
+// Inverse distributions of two parts of EON. Source: tools/fits/eon_sampling.py. Domain: random
+// numbers and their roots in [0, 1]. Largest relative errors: 1.27e-5 and 5.7e-6 of the densities,
+// and 1.8e-7 of ROOT, the inverse of m = y Q(y).
 #define EON_MULTIPLE0 -0.1221923217
 #define EON_MULTIPLE1 0.3674909842
 #define EON_MULTIPLE2 -0.5228247070
@@ -39,33 +40,33 @@ float eon_gray_ratio(float rho, float roughness)
     return weight * rho / (1.0 + EON_C1 * roughness - roughness * EON_LOSS_AVG * rho);
 }
 
-// (1 - S^3) / mu, with neither a division by mu nor a cancellation.
+// (1 - S^3) / mu without a division by mu or cancellation.
 float eon_cube_gap(float mu, float S)
 {
     return mu * (1.0 + S + S * S) / (1.0 + S);
 }
 
-// Direction with cosine mu and sine S, on the side of wo; the azimuth's sine is uniform.
+// Direction on the side of wo with cosine mu and sine S. The sine of the azimuth is uniform.
 vec3 eon_towards(float mu, float S, float u2)
 {
     return vec3(2.0 * S * sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu);
 }
 
-// Cosine drawn in proportion to S mu below mu_o: x = 1 - S^3 is uniform.
+// Cosine below mu_o, drawn in proportion to S mu, for a uniform x = 1 - S^3.
 float eon_lower_cosine(float x, float S)
 {
     return sqrt(x * (1.0 + S) / (1.0 + S + S * S));
 }
 
-// y(m), inverse of m = y Q(y): (K / K(pi / 2))^(2 / 5), K the integral of sin^2 (1 - cos) up to the
-// angle whose cosine is 1 - m.
+// y(m) = (K / K(pi / 2))^(2 / 5), the inverse of m = y Q(y). K is the integral of sin^2 (1 - cos)
+// up to the angle whose cosine is 1 - m.
 float eon_upper_root(float m)
 {
     float high = EON_ROOT3 + m * (EON_ROOT4 + m * EON_ROOT5);
     return m * (EON_ROOT0 + m * (EON_ROOT1 + m * (EON_ROOT2 + m * high)));
 }
 
-// Q(y) of eon_upper_cosine, 1 at y = 1.
+// Q(y) of eon_upper_cosine, where Q(1) = 1.
 float eon_upper_quotient(float y)
 {
     float y2 = y * y;
@@ -74,14 +75,14 @@ float eon_upper_quotient(float y)
     return 1.0 + (1.0 - y) * (even + y * odd);
 }
 
-// Cosine drawn in proportion to S (1 - mu) above mu_o: K is uniform, y = v^(2 / 5), and
-// 1 - mu = m(v K_o) (1 - mu_o) / m(K_o), m(K) = y Q(y).
+// Cosine above mu_o, drawn in proportion to S (1 - mu), for a uniform K. With y = v^(2 / 5) and
+// m(K) = y Q(y), 1 - mu = m(v K_o) (1 - mu_o) / m(K_o).
 float eon_upper_cosine(float y, float mu_o, float y_o)
 {
     return 1.0 - (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y));
 }
 
-// Cosine drawn in proportion to H(mu) mu, a function of t = v^(1 / 3).
+// Cosine drawn in proportion to H(mu) mu, as a function of t = v^(1 / 3).
 float eon_multiple_cosine(float t)
 {
     float m = max(1.0 - t, 0.0);
@@ -91,8 +92,8 @@ float eon_multiple_cosine(float t)
     return t * (1.0 + m * (even + m * w * odd));
 }
 
-// Drawn in proportion to 1 + q x: the inverse distribution of x moves a uniform point of the disk
-// along its chord. z is sqrt(1 - x^2 - y^2) without a cancellation.
+// Direction drawn in proportion to 1 + q x. The inverse distribution of x moves a uniform disk
+// point along a chord. z is sqrt(1 - x^2 - y^2) without cancellation.
 vec3 eon_flat_draw(float v, float u2, float q)
 {
     vec3 wh = cosine_sample(v, u2);
@@ -102,9 +103,9 @@ vec3 eon_flat_draw(float v, float u2, float q)
     return vec3((q * (1.0 - wh.y * wh.y) + 2.0 * wh.x) / (1.0 + root), wh.y, z);
 }
 
-// Drawn from one of the four parts, chosen by u1 in proportion to their integrals; wo has azimuth 0.
-// The flat part's integral over pi is 1. The others share a power, the most expensive operation: if
-// lanes of a GPU choose different parts, each lane pays for all.
+// Direction for wo at azimuth 0. u1 chooses one of four parts in proportion to their integrals; the
+// flat part's is pi. The other parts share a costly power, since GPU lanes that choose different
+// parts pay for all.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
     float q = roughness * S_o;
@@ -128,8 +129,8 @@ vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughn
     return v < towards ? eon_towards(mu, S, u2) : eon_around(mu, S, u2);
 }
 
-// Drawn in proportion to EON with a gray rho, times the cosine: docs/sampling.md. Samples are kept
-// above the horizon, where the density is 0 and a weight 0 / 0.
+// Direction drawn in proportion to the cosine times EON with a gray rho: docs/sampling.md. Samples
+// avoid the horizon, where the density is 0 and a weight 0 / 0.
 vec3 eon_sample(vec3 wo, float u1, float u2, float rho, float roughness)
 {
     vec3 turn = eon_azimuth_frame(wo);
@@ -138,7 +139,8 @@ vec3 eon_sample(vec3 wo, float u1, float u2, float rho, float roughness)
     return vec3(wi.x, wi.y, max(wi.z, EON_HORIZON));
 }
 
-// EON with a gray rho times the cosine, over its integral: [Portsmouth2025], Eqs. (16), (19), (28).
+// Cosine times EON with a gray rho, divided by the integral: [Portsmouth2025], Eqs. (16), (19),
+// (28).
 float eon_pdf(vec3 wo, vec3 wi, float rho, float roughness)
 {
     float mu_o = min(wo.z, 1.0);

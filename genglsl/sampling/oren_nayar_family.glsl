@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every model of the Oren-Nayar family as plain functions, with the names of the Python package.
+// Every model of the Oren-Nayar family as plain functions, named as in the Python package.
 //
-// wo and wi are unit vectors that leave the surface, in a local frame with the normal +z, neither
-// below the horizon. Values are BRDFs, without the cosine. Albedos of QON and FON are at rho = 1.
+// wo and wi are unit vectors that leave the surface, in a local frame with the normal +z, and not
+// below the horizon. BRDFs do not include the cosine. Albedos of QON and FON are for rho = 1.
 
 #include "../lib/eon.glsl"
 
-// [Portsmouth2025], Eq. (14); mu in [0, 1]; largest error of G_F / pi: 6.0e-4.
+// [Portsmouth2025], Eq. (14), for mu in [0, 1]. Largest error of G_F / pi: 6.0e-4.
 #define EON_G1 0.0571085289
 #define EON_G2 0.491881867
 #define EON_G3 -0.332181442
@@ -57,7 +57,7 @@ vec3 eon_albedo_avg(vec3 rho, float roughness)
     return rho * (vec3(1.0) - roughness * EON_LOSS_AVG * (vec3(1.0) - rho) / D);
 }
 
-// s of [Portsmouth2025], Eq. (3), without the difference: N is +z.
+// s of [Portsmouth2025], Eq. (3). N is +z, so the difference is not needed.
 float oren_nayar_s(vec3 wo, vec3 wi)
 {
     return wo.x * wi.x + wo.y * wi.y;
@@ -69,9 +69,9 @@ vec3 lambert_brdf(vec3 wo, vec3 wi, vec3 rho)
     return rho / EON_PI;
 }
 
-// The angle with sine y and cosine x, as a fraction of a right angle: four times an arc tangent for
-// a quarter of it (tools/fits/arc_tangent.py). Built-in functions are less accurate: SwiftShader's cosine
-// is off by 1.9e-4, OSL's arc tangent by 1.2e-5.
+// The angle with sine y and cosine x, divided by a right angle. A polynomial
+// (tools/fits/arc_tangent.py) computes a quarter of the angle. Built-in functions are less
+// accurate: the cosine of SwiftShader is off by 1.9e-4, the arc tangent of OSL by 1.2e-5.
 float oren_nayar_angle(float y, float x)
 {
     float t_half = y / (1.0 + x);
@@ -81,9 +81,9 @@ float oren_nayar_angle(float y, float x)
     return 8.0 / EON_PI * t * series;
 }
 
-// (sin(alpha) - (2 beta / pi)^3) / cos(beta), and its limit 6 / pi with both directions at grazing.
-// With q = 1 - 2 beta / pi the cube is 1 - q (3 - 3 q + q^2), and 1 - sin(alpha) is
-// cos(alpha)^2 / (1 + sin(alpha)), so the ones cancel exactly.
+// (sin(alpha) - (2 beta / pi)^3) / cos(beta), or the limit 6 / pi if both directions are grazing.
+// The cube is 1 - q (3 - 3 q + q^2) with q = 1 - 2 beta / pi, and sin(alpha) is 1 - cos(alpha)^2 /
+// (1 + sin(alpha)), so the ones cancel exactly.
 float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 {
     float high = max(mu_o, mu_i);
@@ -96,7 +96,7 @@ float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 // [OrenNayar1994], the functional approximation for Gaussian slopes, with interreflection:
 //   f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
 //       + 0.17 rho^2 / pi k (1 - (2 beta / pi)^2 cos(phi)),  k = sigma^2 / (sigma^2 + 0.13)
-// alpha is the larger polar angle, beta the smaller; the code uses fractions of a right angle.
+// alpha is the larger polar angle and beta the smaller. The code divides both by a right angle.
 vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float mu_o = min(wo.z, 1.0);
@@ -123,7 +123,7 @@ vec3 qon_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return qon_brdf_mu(min(wo.z, 1.0), min(wi.z, 1.0), oren_nayar_s(wo, wi), rho, sigma);
 }
 
-// QON with 0.57 instead of 0.33 in A_q: [OrenNayar1994], in [Portsmouth2025], footnote 1.
+// QON with 0.57 instead of 0.33 in A_q: [OrenNayar1994] in footnote 1 of [Portsmouth2025].
 vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = qon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
@@ -131,7 +131,7 @@ vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return 1.0 / EON_PI * (A + qon_bq(sigma) * quotient) * rho;
 }
 
-// QON's B_q, FON's s/t and an A that grows with rho: the first formula proposed in [Fujii2013].
+// The first formula proposed in [Fujii2013]: B_q of QON, s/t of FON, and an A that grows with rho.
 vec3 qon_fujii_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
@@ -152,8 +152,8 @@ vec3 eon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
     return eon_brdf_mu(min(wo.z, 1.0), min(wi.z, 1.0), oren_nayar_s(wo, wi), rho, roughness);
 }
 
-// [Portsmouth2025], Eq. (16) with the albedo of Eq. (14). The quartic turns the loss into a gain
-// below mu = 0.0014; there it counts as 0, where the listing of the paper raises 1 - E to 1e-7.
+// [Portsmouth2025], Eq. (16) with the albedo of Eq. (14). Below mu = 0.0014, the loss by the
+// quartic is negative and counts as 0, but the listing of the paper raises 1 - E to 1e-7.
 vec3 eon_brdf_approx(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));

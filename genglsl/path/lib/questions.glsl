@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A closure's `response` by path_asked. PATH_VALUE: f cos(theta_i) of path_wo and path_wi. PATH_PDF: (weight, density
-// of path_wi, 0). PATH_DRAW: (weight, a direction of that density in two numbers). The weight is the mean albedo of
-// the closure's lobes. Weights choose between two closures and mix their densities, so a density is exactly that of
-// the draws, however rough the weights are.
+// A closure's `response` depends on path_asked. PATH_VALUE: f cos(theta_i) of path_wo and path_wi.
+// PATH_PDF: (weight, density of path_wi, 0). PATH_DRAW: (weight, drawn direction in two numbers).
+// The weight is the mean albedo of the closure's lobes. Weights choose between two closures and mix
+// their densities, so a density is exactly that of the draws, even if weights are rough.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 
-// An environment of radiance 1 turns INDIRECT into the albedo. A path has no neighbors for derivatives.
+// In an environment of radiance 1, INDIRECT means the albedo. Paths have no neighbors for
+// derivatives.
 #define mx_environment_irradiance(N) vec3(1.0)
 #define fwidth(x) vec3(0.0)
 
@@ -19,7 +20,7 @@ bool path_is_asked(ClosureData closureData)
     return closureData.closureType == CLOSURE_TYPE_REFLECTION && path_asked != PATH_NOTHING;
 }
 
-// Arguments of eonlib's function for the value in direct light, which includes F at the half vector.
+// Arguments of eonlib's function for direct light, whose value includes F at the half vector.
 ClosureData path_question_in_direct_light(ClosureData closureData)
 {
     closureData.closureType = CLOSURE_TYPE_REFLECTION;
@@ -29,7 +30,7 @@ ClosureData path_question_in_direct_light(ClosureData closureData)
     return closureData;
 }
 
-// Arguments for the value or for the albedo.
+// Arguments for the value or the albedo.
 ClosureData path_question(ClosureData closureData)
 {
     closureData = path_question_in_direct_light(closureData);
@@ -42,7 +43,7 @@ float path_mean(vec3 color)
     return dot(max(color, 0.0), vec3(1.0 / 3.0));
 }
 
-// Directions to the frame of X and N, and back.
+// Directions from world to the frame of X and N, and back.
 vec3 path_local(vec3 w, vec3 X, vec3 N)
 {
     return vec3(dot(w, X), dot(w, cross(N, X)), dot(w, N));
@@ -59,7 +60,7 @@ vec3 path_across(vec3 N)
     return normalize(cross(abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), N));
 }
 
-// Response of a lobe: `drawn`, from path_u, or the density of path_wi.
+// Response of a lobe: the weight, and `drawn` or the density of path_wi.
 vec3 path_answer(float weight, vec2 drawn, float pdf)
 {
     return path_asked == PATH_DRAW ? vec3(weight, drawn) : vec3(weight, pdf, 0.0);
@@ -89,7 +90,7 @@ vec3 path_scaled(vec3 response, vec3 factor)
     return path_asked == PATH_VALUE ? response * factor : vec3(response.x * path_mean(factor), response.yz);
 }
 
-// The closure called last gives the response of the material.
+// The closure called last sets the response of the material.
 void path_end(BSDF bsdf)
 {
     path_root = bsdf.response;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changed from MaterialX's file of this name: Copyright Contributors to the MaterialX Project.
-// MaterialX's sum of an environment over the visible facets, but with masking by the direction if the alphas differ,
-// and without negative reflectances. It replaces MaterialX's file where a client searches `genglsl/environment`
-// before MaterialX's data.
+// Changed from MaterialX's file of this name, Copyright Contributors to the MaterialX Project. The
+// sum of an environment over visible facets. Unlike in MaterialX, masking depends on the direction,
+// and reflectances are never negative. This file replaces MaterialX's for clients that search
+// `genglsl/environment` before MaterialX's data.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
