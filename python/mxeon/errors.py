@@ -103,8 +103,8 @@ FUNCTION = re.compile(r"^\w[\w ]* (\w+)\([^;]*$", re.MULTILINE)
 def refused(host: str, words: str, text: str) -> ShaderError:
     """The error for a rejected shader, with the function, the line and the first compiler message.
 
-    >>> str(refused("gl", "0:2(1): warning: no use\\n0:3(1): error: no x", "float f()\\n{\\n
-    return x;\\n}\\n")) "gl: the shader does not compile, in f: 'return x;': no x"
+    >>> str(refused("gl", "0:2(1): warning: no use\\n0:3(1): error: no x", "float f()\\n{\\n    return x;\\n}\\n"))
+    "gl: the shader does not compile, in f: 'return x;': no x"
     """
     lines = text.split("\n")
     found = REFUSED.search("\n".join(each for each in words.split("\n") if "warning" not in each))
