@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Explains failures by a function or a fault that gives the same values, or by a wrong region.
+"""Explains a failed check by another model, by a mistake in the inputs, or by a region of errors.
 
-A candidate is a function that may give a node's values, such as another model. A fault is a mistake
-between a node's inputs and its model. A region is a set of pairs or a range of an input.
+A candidate is a function that may have computed a node's values, such as another model. A fault is
+a mistake between a node's inputs and the node's model, such as an ignored weight. A region is a set
+of direction pairs, or a range of an input, that contains all wrong values.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -37,34 +38,34 @@ from mxeon.models.shading_model import UP
 
 Measure: TypeAlias = Callable[[Case], Iterable[Compared]]
 
-EXCHANGES = (NO_FAULT,)  # the only faults to try are exchanged inputs and a wrong factor
+EXCHANGES = (NO_FAULT,)  # try no faults except exchanged inputs and a wrong factor
 PLACELESS = Ability.MEDIUM | Ability.OUTPUT  # nodes that depend on neither view nor light
-# Causes that are replaced by a region with all wrong values, if the check's values have one.
+# Causes that are reported only if no region contains all wrong values of the check.
 SINGLY_RIGHT, UNKNOWN, OTHER_AVERAGE, UNMASKED = UNTOLD = tuple(
     Cause(Kind.UNKNOWN, key) for key in ("singly_right", "unknown", "other_average", "unmasked")
 )
 UNEXPLAINED = Diagnosis((UNKNOWN,))
-# A cure is a value of an input for which a check's worst pairs are correct.
+# A cure is a change of an input to a value that makes the worst pairs of a check correct.
 WORST = 32  # number of the worst pairs for which cures are tried
 CURES = 2  # maximum number of reported cures
-DIMMING = ("weight", "occlusion")  # inputs that can reduce any error
+DIMMING = ("weight", "occlusion")  # inputs that can hide any error
 REMAINING = 0.1  # smallest share of the light that a cure may leave
-# An explanation is complete if its distance from the measured values is below SAME times the
-# distance of every other explanation, and near below NEAR times.
+# An explanation is complete if the distance between explained and measured values is below SAME
+# times the distance of every other explanation. The factor for a near explanation is NEAR.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # a near model must be closer than this share of the claimed model's distance
-NAMED = 0.5  # the closest model is named if its distance is below this share of the values
+FAR = 0.2  # a near model must be closer than this share of the expected model's distance
+NAMED = 0.5  # largest distance of a named model, relative to the distance of black values
 INEXACT = 30.0  # errors up to this many tolerances count as inaccuracy of the expected model
-LEAST_LIGHT = 1e-3  # up to this cosine of the light, wrong cosines cannot be distinguished
+LEAST_LIGHT = 1e-3  # cosine of the light up to which faults of the cosine look alike
 
 
 def defect(key: str, *names: str) -> Diagnosis:
-    """The diagnosis for a row of `mxeon.conformance.words.DEFECTS`."""
+    """The diagnosis of the defect with a key of `mxeon.conformance.words.DEFECTS`."""
     return Diagnosis((Cause(Kind.DEFECT, key, names),))
 
 
 def causes_of(parts: Iterable[tuple[Cause, Compared]], tolerance: Tolerance) -> Diagnosis:
-    """A diagnosis with the cause of each part that is wrong."""
+    """A diagnosis with the causes of all parts whose comparison fails."""
     wrong = (cause for cause, each in parts if tolerance.wrong(each).any())
     return Diagnosis(tuple(dict.fromkeys(wrong)))
 
@@ -79,8 +80,8 @@ def explain(
 ) -> Diagnosis:
     """Explain values by candidates, or by faults of the node's own model.
 
-    - `candidates`: Functions that may give the values, starting with the node's own model.
-    - `measure`: The check's measurement, to try other inputs; None to try none.
+    - `candidates`: Functions that may have computed the values. The first is the node's own model.
+    - `measure`: The check's measurement, which is repeated for other inputs; None to skip this.
     """
     if infinite := not_finite(cases):  # NaN has no distance; explain only finite values
         finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
@@ -90,7 +91,7 @@ def explain(
         return Diagnosis((*infinite, *others.causes), others.distances)
     few = slice(case.backend.counts.diagnosed)
     short = [Compared(batch.where(few), *(each[few] for each in rest)) for batch, *rest in cases]
-    # Many faults leave the inputs of the node's own model unchanged, so its values are cached.
+    # Many faults leave the inputs of the node's own model unchanged, so values are cached.
     own = replace(candidates[0], values=remembered(candidates[0].values))
     candidates = [own, *candidates[1:]]
     models = {each.title: _distance(short, each, NO_FAULT, tolerance) for each in candidates}
@@ -106,13 +107,13 @@ def explain(
         factor = float(products / squares) if squares else 1.0
         faults = (*faults, *exchanged, scaled_by(factor))
         distances = [_distance(short, own, fault, tolerance) for fault in faults]
-        best = int(np.argsort(distances, kind="stable")[0])  # unlike argmin, ignores NaN
+        best = int(np.argsort(distances, kind="stable")[0])  # argmin would find a NaN
         least = distances.pop(best)
         rival = min([*models.values(), *distances])
         if least <= min(SAME * models[own.title], max(SAME * rival, tolerance.value)):
             return Diagnosis((faults[best].cause(least),), models)
     nearest = next(each for each in candidates if each.title == ranking[0][0])
-    # The model that is nearest on average may still be far from the wrong values.
+    # The model that is nearest on average may still be far from single values.
     near, far = (
         max(tolerance.metric(each.measured, model.values(each.batch)).max() for each in short)
         for model in (nearest, own)
@@ -131,13 +132,13 @@ def _distance(
     """Root-mean-square distance between the measured values and a candidate with a fault.
 
     Roughnesses above 1, which not every model supports, and lights with a cosine up to LEAST_LIGHT
-    are excluded. If the tolerance is for a mean, values are noisy and their means are compared.
+    are excluded. If the tolerance limits a mean, single values are noisy, so means are compared.
     """
     errors = []
     for case in cases:
         try:
             values = fault.values(case.batch, candidate.values(fault.batch(case.batch)))
-        except ValueError:  # an exchanged input may be outside its new domain
+        except ValueError:  # an exchanged input may be outside the model's domain
             return float("inf")
         judged = case.batch.rough <= 1.0
         if not tolerance.quantity.of_views:
@@ -158,11 +159,11 @@ def _without_fault(
     measure: Measure | None,
     explains: bool,
 ) -> tuple[Cause, ...]:
-    """Causes if no fault explains the values: another model, a wrong region, cures, or unknown.
+    """Causes if no fault explains the values: another model, a region, cures, or an unknown cause.
 
-    - `ranking`: Titles of candidates and their distances, closest first.
+    - `ranking`: Titles and distances of candidates, closest first.
     - `own`: Title of the node's own model.
-    - `explains`: Whether the closest candidate is another model and gives every value.
+    - `explains`: Whether the closest candidate is another model that matches every value.
     """
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     (first, least), (_, rival) = ranking[:2]
@@ -174,7 +175,7 @@ def _without_fault(
             if spec.flag is not None and reference.diffuse_model(spec.model).title == first
         )
         return (Cause(Kind.MODEL, first, values=next(flags, ()), rms=least),)
-    # Find a region in which the values do not match the own model, or a lack of accuracy.
+    # Find a region in which the values differ from the node's own model, or a lack of accuracy.
     if not wrong.any():
         return (SINGLY_RIGHT,)
     if region := smallest(cases, tolerance):
@@ -223,7 +224,7 @@ def _without_fault(
 
 
 def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> Cause:
-    """The region that contains all wrong values; if there is no such region, the given cause."""
+    """A cause with the region of all wrong values; if there is no such region, the given cause."""
     if region := region_of(cases, tolerance):
         return correct_except(cases, tolerance, region)
     if cause == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
@@ -234,7 +235,7 @@ def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> C
 def _cures(
     case: Case, cases: Sequence[Compared], tolerance: Tolerance, measure: Measure
 ) -> dict[str, float]:
-    """Inputs that make the worst pairs correct if changed alone, each with its new value."""
+    """Inputs that make the worst pairs correct if changed alone, each with the new value."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
     worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
     batch, cures = most.batch, {}
@@ -258,30 +259,30 @@ def _cures(
 
 
 def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
-    """The cause for non-finite values, with their region; empty if all are finite."""
+    """A cause with the region of non-finite values; empty if all values are finite."""
     zeros = list(map(regions.unbounded, cases))
     if not any(EXACT.wrong(each).any() for each in zeros):
         return ()
     return (Cause(Kind.NOT_FINITE, region=region_of(zeros, EXACT)),)
 
 
-# Comparisons, one per quantity.
+# Each comparison below covers a quantity, such as the albedo.
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Measured and expected values of a quantity, with candidates for their explanation."""
+    """A quantity: how to compare measured with expected values, and how to explain differences."""
 
     quantity: str  # name of the quantity in a spec's tolerances
     compared: Measure
-    candidates: Callable[[Case], Sequence[Candidate]]  # start with the node's own model
-    faults: Sequence[Fault] = ()  # faults of the own model to try
+    candidates: Callable[[Case], Sequence[Candidate]]  # the first is the node's own model
+    faults: Sequence[Fault] = ()  # faults to combine with the node's own model
 
     def __call__(self, case: Case) -> Iterable[Compared]:
         return self.compared(case)
 
     def diagnose(self, case: Case) -> Diagnosis:
-        """The explanation of a case, cached because several checks of a node fail alike."""
+        """The explanation of a case, cached because several checks may fail for the same reason."""
         if self not in case.explained:
             tolerance, compared = case.tolerance(self.quantity, "value"), list(self(case))
             candidates, faults = self.candidates(case), self.faults
@@ -296,7 +297,7 @@ def _backs(case: Case) -> Iterator[Compared]:
 
 
 def _rescaled_candidates(case: Case) -> Sequence[Candidate]:
-    """Candidates for values, rescaled to the unit in which errors are uniform."""
+    """Candidates for values, rescaled so that errors are uniform."""
 
     def rescaled(candidate: Candidate, batch: Batch) -> Array:
         values = candidate.values(batch)
@@ -306,9 +307,9 @@ def _rescaled_candidates(case: Case) -> Sequence[Candidate]:
 
 
 def _transmittances(case: Case) -> Iterator[Compared]:
-    """Light through a medium, then through a surface over a medium, divided by unobstructed light.
+    """Compare the light through a medium, then through a surface over a medium.
 
-    The quotients are compared with the transmittance of the medium.
+    The light is divided by the light without a medium and compared with the transmittance.
     """
     spec, evaluate = case.of(emission.MediumSpec), case.evaluating.evaluate
     [batch] = case.batches
@@ -330,8 +331,8 @@ THROUGHPUT = Comparison("throughput", lambda case: throughputs(case, *LIGHT), PA
 TRANSMISSION = Comparison(
     "throughput", lambda case: throughputs(case, "transmission"), PASSED, EXCHANGES
 )
-# Comparisons of a utility node's output or of emission from the front, and of emission from the
-# back.
+# OUTPUT compares the output of a utility node, or emission toward the front of a surface. BACK
+# compares emission toward the back of the surface.
 OUTPUT = Comparison(
     "value",
     lambda case: map(case.valued.rescaled, values(case)),
@@ -344,7 +345,7 @@ TRANSMITTANCE = Comparison("value", _transmittances, VALUES)
 
 # Diagnoses of throughput, frame and environment lookup, which do not depend on the model.
 
-# Irradiance by kind of wrong environment lookup.
+# Irradiance that results from each kind of wrong environment lookup.
 LOOKUPS: dict[str, Callable[[Batch], Array]] = {
     "opposite": lambda batch: sky(-batch.normal),
     "viewer": lambda batch: sky(batch.world(batch.wo)),
@@ -362,7 +363,7 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """The nonzero values and regions of outputs, by output and branch, that must be 0."""
+    """Causes for outputs that must be 0: a constant nonzero value, a region, and the branches."""
     branches: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
@@ -377,7 +378,7 @@ def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) ->
 
 
 def diagnose_frame(case: Case) -> Diagnosis:
-    """The diagnosis of the first wrong branch: an ignored normal or axis, or a wrong region."""
+    """Diagnose the first wrong branch: an ignored normal or axis, or a region of wrong values."""
     tolerance = case.tolerance("frame")
     rows = (
         ("direct", case.direct, case.expected),
@@ -411,7 +412,7 @@ def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...
 
 
 def ignored(name: str) -> Callable[[Case], Diagnosis]:
-    """A diagnosis that an input has no effect; otherwise, the explanation of the values."""
+    """A function that reports that an input has no effect, or else explains the values."""
     return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).causes)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults: mistakes between a node's inputs and its model, which do not depend on the model."""
+"""Faults: mistakes between a node's inputs and the node's model, such as an ignored weight."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -19,13 +19,13 @@ CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # possible hard-coded roughnesses
 
 @dataclass(frozen=True)
 class Fault:
-    """A mistake that changes the batch that a model receives, or the values that it returns."""
+    """A mistake that changes the inputs that a model receives, or the values that it returns."""
 
     key: str  # key of `mxeon.conformance.words.FAULTS`
     batch: Callable[[Batch], Batch] = lambda batch: batch
     values: Callable[[Batch, Array], Array] = lambda batch, values: values
     names: tuple[str, ...] = ()  # affected inputs or channels
-    numbers: tuple[float, ...] = ()  # such as a hard-coded value, or a factor
+    numbers: tuple[float, ...] = ()  # numbers in the message, such as a factor
 
     def cause(self, rms: float) -> Cause:
         return Cause(Kind.FAULT, self.key, self.names, self.numbers, rms=rms)
@@ -46,7 +46,7 @@ def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Bat
 
 
 def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
-    """A function that scales values by a factor per pair; factors that are not finite become 0."""
+    """A function that scales values by a factor per pair; a factor that is not finite becomes 0."""
 
     def scaled(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -118,7 +118,7 @@ ENVIRONMENT_FAULTS = (
 
 
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:
-    """Faults that exchange two inputs, or all inputs of two nodes, such as `top/weight`."""
+    """Faults that exchange two inputs, or all inputs of two nodes, such as `top` of `top/weight`."""
     for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
         yield Fault("inputs_exchanged", partial(_exchanged, *pair), names=pair)
 
@@ -142,7 +142,7 @@ def scaled_by(factor: float) -> Fault:
 
 
 def normal_ignored(batch: Batch) -> Batch:
-    """A batch with individual frames, converted to the frame of a surface with normal +z."""
+    """The batch as if every surface had the normal +z or -z, whichever faces the viewer."""
     wo, wi = batch.world(batch.wo), batch.world(batch.wi)
     side = np.where(wo[:, 2:] < 0.0, -1.0, 1.0)
     return replace(batch, wo=wo * side, wi=wi * side, frame=None)

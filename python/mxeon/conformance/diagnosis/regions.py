@@ -13,7 +13,7 @@ from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of,
 
 COLORS = ("color", "tint", "color0")  # possible names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
-# Inputs that named regions depend on, by the first word of the region's name.
+# Inputs on which named regions depend, by the first word of the region's name.
 INPUTS = {
     "color": COLORS,
     "weight": ("weight",),
@@ -26,14 +26,16 @@ UNREPORTED = ("normal", "tangent", "curve_direction", "position", "surface_norma
 USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults of inputs that a batch lacks
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
-# A range of an input that contains all wrong values may contain at most this share of all correct
-# values: usually RIGHT, or WEAK if the input is known to be the cause.
+# A reported range of an input contains all wrong values, and at most a share of all correct values:
+# usually RIGHT, or WEAK if the input is known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
-CLEARER = 0.5  # a range with two ends must halve this share, compared with a range with one end
+CLEARER = 0.5  # factor by which a range with two ends must undercut the share of other ranges
 CHANCE = 12.0  # smallest log odds against finding a range by chance
 LARGEST = 0.6  # largest share of all pairs or values that a reported region may contain
 DENSITY = 0.1  # smallest share of wrong pairs in a region
-UPRIGHT = 1e-3  # largest tangent of half vectors along the normal; their cosines round to about 1
+# Largest tangent of the angle between the normal and a half vector that counts as upright. In
+# float32, the cosine of such an angle rounds to about 1.
+UPRIGHT = 1e-3
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
@@ -44,13 +46,13 @@ def region_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 def correct_except(
     cases: Sequence[Compared], tolerance: Tolerance, region: Region | None = None
 ) -> Cause:
-    """A cause with the number of wrong pairs, and the region that contains them if given."""
+    """A cause with the number of wrong pairs, and with the region of these pairs if given."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     return Cause(Kind.REGION, region=region, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
 
 
 def unbounded(compared: Compared) -> Compared:
-    """A comparison with 0 in which finite values become 0 and all others NaN."""
+    """A comparison with 0, in which finite values become 0 and all other values become NaN."""
     zeros = np.where(np.isfinite(compared.measured), 0.0, np.nan)
     return Compared(compared.batch, zeros, np.zeros_like(zeros))
 
@@ -70,10 +72,10 @@ def smallest(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 
 
 def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -> Region | None:
-    """The range of an input that contains all wrong and the fewest correct values.
+    """The range of an input that contains all wrong values and the fewest correct values.
 
-    None if no range is clear. Color channels are judged separately, each with the same channel of
-    color inputs.
+    The result is None if every range contains too many correct values. Color channels are judged
+    separately, and a channel of the values belongs to the same channel of color inputs.
 
     - `most`: Largest share of all correct values that the range may contain.
     """
@@ -115,7 +117,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
 
 
 def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
-    """Parts of an input that may have a range: keys of `words.PARTS`, each with its numbers.
+    """Parts of an input for which a range is sought: keys of `words.PARTS`, each with numbers.
 
     - `wrong`: Mask of the color channels with wrong values.
     """
@@ -132,7 +134,7 @@ def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[Region, ...]:
-    """The regions that a node never reaches because some of its inputs have constant values."""
+    """Regions without any pair of a node, because some inputs of the node have constant values."""
     normal = np.array([[0.0, 0.0, 1.0]])
     inputs = {name: np.array([each if len(each) > 1 else each[0]]) for name, each in values.items()}
     return tuple(
@@ -223,13 +225,15 @@ HALF = 0.5  # cosine that divides views, and lights, into two regions
 
 
 def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Errors, ...], str]:
-    """Errors of all samples, then below and above each input's median; and the samples' checksum.
+    """Errors of all samples, errors below and above the median of each input, and a checksum.
 
-    For colors and pairs of alphas, the largest component is used.
+    The checksum identifies the samples. The largest component of a color or of a pair of alphas
+    counts.
     """
     batches = [each.batch for each in cases]
     rows = np.concatenate([tolerance.metric(*each[1:]) for each in cases])
-    halves: list[tuple[Array, float, Region, Region]] = []  # numbers, their middle, and two regions
+    # Each row has numbers, a limit that divides the numbers, and the regions below and above.
+    halves: list[tuple[Array, float, Region, Region]] = []
     for name, field in (("viewer", "wo"), ("light", "wi")):
         low, high = (
             Region(f"{name}_cosine_below", high=HALF),

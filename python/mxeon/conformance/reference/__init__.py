@@ -23,14 +23,15 @@ from mxeon.shaders.generation import Shader
 from mxeon.shaders.inner_lobes import TRANSMISSION, inner_lobes
 from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 
-# Size of pictures of a pattern, and maximum number of patterns drawn to find a wrong one.
+# Size of a picture that shows a pattern node, and maximum number of pattern nodes that are drawn to
+# find a wrong node.
 PATTERN_SIZE, PATTERNS_DRAWN = 32, 16
-# Smallest reported difference of a pattern; texture filters and powers have smaller errors.
+# Smallest reported error of a pattern node; texture filters and powers have smaller errors.
 PATTERN_ERROR = 0.01
 LATTICE = 32  # number of judged rows and columns in a picture with more than MOST materials
-MOST = 2000  # maximum judged pixels with different materials; an integral takes a millisecond
+MOST = 2000  # maximum number of integrals, each of which takes a millisecond
 
-PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # generators draw at most three components
+PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # hosts draw at most three components
 TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # targets whose shaders can draw a node's value
 
 
@@ -49,7 +50,7 @@ class HostValues:
     pictures: dict[tuple[str, ...], Array] = field(default_factory=dict)
 
     def __call__(self, size: int, elements: Elements, kind: str, output: str = "") -> Array:
-        """Values of the last of nested elements, (size, size, components).
+        """Values of the innermost of nested elements, (size, size, components).
 
         An output is drawn as a surface that emits the output's color. Raise NotRun if the host
         cannot draw the value.
@@ -75,7 +76,7 @@ class HostValues:
         return self.pictures[key][..., : DRAWN[kind]]
 
     def at(self, mask: NDArray[np.bool_]) -> Measure:
-        """The values of elements at some pixels of a square picture."""
+        """A function that returns values of elements at the pixels of a mask, (size, size)."""
         return lambda elements, kind, output: self(len(mask), elements, kind, output)[mask]
 
 
@@ -98,10 +99,10 @@ class Reference(base.Host):
         return base.Identity(self.name, f"NumPy {np.__version__}", "CPU, float64")
 
     def picture(self, shader: Shader, scene: Scene) -> NDArray[np.float64]:
-        """Picture of the sphere with the shader's document; see `mxeon.hosts.base.Host`.
+        """Picture of the sphere with the shader's material; see `mxeon.hosts.base.Host`.
 
-        Raise NotRun if the material has lobes that the models do not cover, or the light is an
-        image; ValueError if the scene asks for paths.
+        Raise NotRun if the models do not cover a lobe of the material, or if the light is an image.
+        Raise ValueError if the scene asks for path tracing.
         """
         self.refuse_paths(scene)
         self.refuse_shape(scene)
@@ -110,10 +111,11 @@ class Reference(base.Host):
     def expected(
         self, shader: Shader, scene: Scene, values: HostValues | None = None, stride: int = 1
     ) -> ExpectedPicture:
-        """The expected picture of the judged host, which draws unknown inputs of lobes by `values`.
+        """The picture that is expected from the judged host.
 
-        Only every `stride`-th row and column is computed; with `values`, the stride grows if there
-        are too many materials. Raise NotRun as `picture` does.
+        The host draws inputs of lobes that the reference cannot compute, by `values`. Only every
+        `stride`-th row and column is computed. If there are `values`, but too many different
+        materials, the stride grows. Raise NotRun as `picture` does.
         """
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)
@@ -161,8 +163,8 @@ class Reference(base.Host):
     def _values(self, query: base.Query) -> NDArray[np.float64]:
         """Values of the document's lobes; see `mxeon.hosts.base.Host.evaluate`.
 
-        The branch "opacity" has the light that passes without refraction, as by MaterialX's method
-        of that name. Raise NotRun for anything but the response to a light or a uniform environment.
+        The branch "opacity" returns the light that passes if opacity replaces refraction. Raise
+        NotRun for anything but the response to a light or a uniform environment.
         """
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         branches = ("direct", "environment", "transmission", "opacity")

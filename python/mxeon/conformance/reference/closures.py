@@ -30,7 +30,7 @@ from mxeon.shaders.nodes import FLAG, OREN_NAYAR
 Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `mxeon.hosts.base.Host.evaluate`
 ONE = np.ones((1, 1))
-ROUNDED = 1e-4  # differences of unit vectors below this are roundings
+ROUNDED = 1e-4  # largest difference of unit vectors that may be due to rounding
 LEAST_HAIR = 1e-12  # smallest hair roughness; at 0, the lobe is a delta function
 GGX = "ggx"  # the only supported microfacet distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
@@ -38,7 +38,7 @@ LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light 
 SCHLICK = node("schlick")
 MICROFACETS = {row.category: row for row in (node("dielectric"), node("conductor"), SCHLICK)}
 OTHERS = (node("burley"), node("translucent"), HAIR_NODE)
-# Models by closure. Except for subsurface scattering, a closure has the name of its node.
+# Models by closure. Except for subsurface scattering, a closure has the name of a MaterialX node.
 BY_CLOSURE = (
     MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
 )
@@ -51,14 +51,14 @@ FLAGGED = {
 
 @dataclass(frozen=True)
 class Views:
-    """Points to shade, with the occlusion and the branch of their light."""
+    """Points to shade, and the occlusion and the branch of the light at these points."""
 
     points: ShadingPoints
     occlusion: Array  # fraction of the light from above that reaches the surface
     branch: str  # "direct", "environment" or "transmission", as in `mxeon.hosts.base.Host.evaluate`
 
     def bsdf(self, tree: ClosureTree | None, layered: bool) -> Bsdf:
-        """Value of a closure tree, and its throughput if `layered`."""
+        """Value of a closure tree, and the throughput of the tree if `layered`."""
         if tree is None or tree.name in LIGHTLESS:
             return NOTHING
         if tree.name in FLAGGED:
@@ -89,7 +89,7 @@ class Views:
         return Bsdf(factor * scaled.value, 1.0 - factor * (1.0 - scaled.throughput))
 
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
-        """A lobe in its frame; the throughput is 1 - E without tints, as MaterialX specifies."""
+        """A single lobe; as MaterialX specifies, the throughput is 1 minus the untinted albedo."""
         if (facets := closure.arguments.get("distribution", GGX)) != GGX:
             rule = f"must be {GGX}, as that of the node; got {facets}"
             raise ShaderError(f"osl: distribution of {closure.name} {rule}")
@@ -102,7 +102,7 @@ class Views:
         if np.any(opposite & ((self.points.wo * self.points.normal).sum(axis=1) > ROUNDED)):
             rule = "must be the node's, or face the viewer; got the opposite"
             raise ShaderError(f"osl: normal of {closure.name} {rule}")
-        if names[1] not in closure.arguments:  # any vector that is not parallel to the normal
+        if names[1] not in closure.arguments:  # use a vector that is not parallel to the normal
             tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)
         wo, wi = self.points.directions(normal, tangent)
         inputs = _inputs(closure, row)
@@ -135,7 +135,7 @@ class Views:
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """Weighted sum of an argument over all closures of this name in the tree; None without any."""
+    """Weighted sum of an argument over closures of a name; None if the tree has no such closure."""
     if tree is None:
         return None
     if tree.name == name:
@@ -157,7 +157,7 @@ def _only_medium(tree: ClosureTree | None) -> bool:
 
 
 def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) -> Bsdf:
-    """A mix of two lobes, with `share` of the second; a lobe whose share is 0 is not evaluated."""
+    """A mix of two lobes with `share` of the second lobe; a lobe with share 0 is not evaluated."""
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)
@@ -173,7 +173,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
             rough = np.stack([inputs[f"variance_{lobe}"], inputs[f"scale_{lobe}"]], axis=-1)
             inputs[name] = np.clip(rough, LEAST_HAIR, None)
     if closure.name in MICROFACETS:
-        # OpenPBR computes alphas above 1 for anisotropic lobes; shaders clamp them to 1.
+        # OpenPBR computes alphas above 1 for anisotropic lobes; shaders clamp alphas to 1.
         alphas = np.stack([inputs["roughness_x"], inputs["roughness_y"]], axis=-1)
         inputs["roughness"] = np.clip(alphas, 0.0, 1.0)
         inputs["tint"] = inputs.get("reflection_tint", np.ones((1, 3)))
@@ -191,7 +191,7 @@ def column(values: ArrayLike) -> Array:
 
 
 def evaluate(trees: Iterable[TreeRows], query: Query) -> Array:
-    """Values of a shader's closures, as `mxeon.hosts.base.Host.evaluate` defines them."""
+    """Values of a shader's closures, defined like results of `mxeon.hosts.base.Host.evaluate`."""
     _, wo, wi, inputs, branch, output, *_ = query
     values = np.zeros((len(wo), 3))
     normal = np.broadcast_to(np.asarray(inputs.get("normal", UP), np.float64), wo.shape)

@@ -5,7 +5,7 @@ A graph may contain lobes with a model, nodes that combine lobes, emissions, ima
 surface shaders use, and nodes that MaterialX defines by nodegraphs of such nodes. Any other node
 raises NotRun, unless a mix skips the node.
 
-A path names a node inside nested nodegraphs; a step is a function with the paths of its arguments.
+A path names a node inside nested nodegraphs. A step is a function and the paths of its arguments.
 """
 
 from __future__ import annotations
@@ -34,21 +34,21 @@ from mxeon.shaders.document import drawn_values, graphs
 from mxeon.shaders.document.values import color_spaces
 from mxeon.shaders.inner_lobes import Nodes, Path
 
-# Types that a generated shader can draw as a color, with their numbers of components.
+# Types that a generated shader can draw as a color, and the number of components of each type.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# A function of nested elements, a type and the name of an output: values that a host has drawn.
+# A function that returns values drawn by a host, for nested elements, a type, and an output's name.
 Measure: TypeAlias = Callable[[drawn_values.Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
 # Values of unconnected inputs by type.
 UNCONNECTED: dict[str, Value] = {"BSDF": nodes.NOTHING, "VDF": None}
 UNCONNECTED |= dict.fromkeys(("EDF", "surfaceshader"), np.zeros(3))
-CHANNELS = {"float": 1, "color3": 3}  # number of an image's channels by the type of its node
+CHANNELS = {"float": 1, "color3": 3}  # number of channels of an image by the image node's type
 UTILITIES = {row.category: row for row in utilities.UTILITIES}
 
 
 class Graph(Nodes):
-    """A document's graph at the points of a picture."""
+    """The graph of a document, evaluated at the points of a picture."""
 
     def __init__(
         self,
@@ -63,9 +63,9 @@ class Graph(Nodes):
         self._emits, self._measure = emits, measure
         self.measured: dict[str, None] = {}  # inputs with values from `measure`, as "node.input"
         self.lobes: list[nodes.ShownLobe] = []
-        self._shader: Path | None = None  # surface shader, if its definition is a nodegraph
+        self._shader: Path | None = None  # surface shader, if defined by a nodegraph
         self._tops: list[Path] = []  # upper lobes of layers, whose throughputs are needed
-        self._hiding: set[Path] = set()  # upper lobes of layers, with all their sources
+        self._hiding: set[Path] = set()  # upper lobes of layers, and all sources of these lobes
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Array:
@@ -73,7 +73,7 @@ class Graph(Nodes):
 
         Raise NotRun if the graph contains an unsupported node.
         """
-        # A node may select among values of which some are not finite.
+        # A node may select a finite value and ignore values that are not finite.
         with np.errstate(divide="ignore", invalid="ignore"):
             path = self._root(name_path)
             self._parts([path])
@@ -81,7 +81,7 @@ class Graph(Nodes):
             return np.asarray(nodes.fitted("color3", self._evaluate(path)), np.float64)
 
     def patterns(self, name_path: str) -> Iterator[tuple[list[mx.Element], Array]]:
-        """Nodes on which an element depends and whose values can be drawn, sources first."""
+        """Nodes that an element depends on and that can be drawn, sources first, with values."""
         order = TopologicalSorter(self._parts([self._root(name_path)])).static_order()
         for path in [each for each in order if each in self.elements]:
             if self.elements[path].isA(mx.Node) and self.elements[path].getType() in DRAWN:
@@ -146,7 +146,7 @@ class Graph(Nodes):
         def surface(bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0) -> Array:
             return np.asarray((bsdf.value + edf) * opacity, np.float64)
 
-        ports = ("bsdf", "opacity", "edf")  # read only the inputs that count
+        ports = ("bsdf", "opacity", "edf")  # the last inputs may not count
         known["surface"] = ports[: 1 + self._emits + emits], surface
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
@@ -208,7 +208,7 @@ class Graph(Nodes):
             return self._constant(path, name, replaced)
         if not port.getConnectedNode():
             return self._constant(path, name, self._written(path, name, port))
-        # Only inputs of lobes and of nodes around lobes may be measured.
+        # Only inputs of lobes, and of nodes that contain lobes, may be measured.
         scatters = any(each.getType() in drawn_values.CLOSURES for each in self._along(owner, path))
         label = f"{port.getParent().getName()}.{name}" if scatters else ""
         return self._connected(path[:-1], port, label)
@@ -223,9 +223,9 @@ class Graph(Nodes):
         return np.reshape(value, (-1, 1)) if is_number else value
 
     def _connected(self, around: Path, port: mx.PortElement, label: str = "") -> Path:
-        """Path to which an input or output inside another path is connected.
+        """Path of the source to which an input or output of the graph at `around` is connected.
 
-        If the value needs an unsupported node, the value of an input with a label is measured.
+        If the source needs an unsupported node and the input has a label, the value is measured.
         """
         path, kind = self.upstream(around, port), port.getType()
         assert path
@@ -243,7 +243,7 @@ class Graph(Nodes):
         return found
 
     def _output(self, path: Path, output: str) -> Path:
-        """Path of a node's output; only nodes with several outputs need its name."""
+        """Path of a node's output; the name `output` matters only if a node has several outputs."""
         node = self.elements[path]
         if node.getType() != "multioutput":
             return path
@@ -259,7 +259,7 @@ class Graph(Nodes):
         return constant
 
     def _along(self, path: Path, outer: Path = ()) -> list[mx.Element]:
-        """Elements along a path, outermost first, from the depth of the path `outer` on."""
+        """Elements along a path, outermost first, starting at the depth of the path `outer`."""
         ends = range(max(len(outer), 1), len(path) + 1)
         return [self.elements[path[:end]] for end in ends if path[:end] in self.elements]
 
@@ -269,11 +269,11 @@ class Graph(Nodes):
         raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
 
     def _written(self, path: Path, name: str, port: mx.Input) -> Value:
-        """Value of an unconnected input, in the document's color space and in meters."""
+        """Value of an unconnected input; colors use the color space of the document, lengths meters."""
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
-        if declared and declared.hasDefaultGeomPropString():  # the property is the only source
+        if declared and declared.hasDefaultGeomPropString():  # the only source is this property
             return self._points.geometry(declared.getDefaultGeomPropString())
         value = port.getValue()
         if value is None and declared:  # MaterialX ignores an unresolved connection

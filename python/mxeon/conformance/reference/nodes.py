@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions of a document's nodes: lobes with a model, combined lobes, and number operations.
+"""Functions that evaluate nodes: lobes with a model, combinations of lobes, and number operations.
 
-A value is an array with its components on the last axis; a number is () or (N, 1). A number counts
-for all components of a color or vector.
+The last axis of a value holds the components. A number has the shape () or (N, 1) and applies to
+all components if combined with a color or a vector.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ TAIL = 1e-6
 ISOTROPIC = ((32, 0), (64, 0), (128, 0), (256, 0))
 ANISOTROPIC = ((24, 12), (48, 32))
 AT_ONCE = 1 << 12  # number of arguments for which a series is summed at once
-CACHED = 4  # maximum cached lobes of a picture, up to 2.5 megabytes each
+CACHED = 4  # maximum number of cached lobes of a picture, up to 2.5 megabytes each
 SEPARATE = 1000  # minimum number of directions for which a series is faster
 
 
 class ManyMaterialsError(Exception):
-    """Too many points with different materials to integrate them individually."""
+    """Too many points have different materials, so integrals would take too long."""
 
 
 def _directions(mu: Array, phi: Array) -> Array:
@@ -59,12 +59,12 @@ def _directions(mu: Array, phi: Array) -> Array:
 
 
 def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
-    """Sums of a Chebyshev series in sqrt(mu), over [low, 1], and in cos(2 phi), (N, 3)."""
+    """Sums, (N, 3), of a Chebyshev series in sqrt(mu) from `low` to 1, and in cos(2 phi)."""
     root = np.sqrt(np.minimum(wo[:, 2], 1.0))
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
     v = np.zeros_like(u) if turns else (x - y) / np.maximum(x + y, 1e-300)
-    # A picture has many equal directions.
+    # Evaluate each distinct direction once, because a picture has many equal directions.
     each, indices = np.unique(np.round(u + 1j * v, 13), return_inverse=True)
     parts = np.array_split(each, 1 + len(each) // AT_ONCE)
     sums = [chebyshev.chebval2d(part.real, part.imag, series).T for part in parts]
@@ -77,7 +77,7 @@ ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # caches
 def _series(
     albedo: Albedo, inputs: Inputs, low: float, degrees: tuple[tuple[int, int], ...]
 ) -> Array | None:
-    """Chebyshev coefficients of an albedo, (X, Y, 3), or None if they decay too slowly."""
+    """Chebyshev coefficients of an albedo, (X, Y, 3), or None if coefficients decay too slowly."""
     for degree, turns in degrees:
         x, y = chebyshev.chebpts1(degree + 1), chebyshev.chebpts1(turns + 1)
         cosines = np.square(low + (1.0 - low) * 0.5 * (1.0 + x))
@@ -121,15 +121,15 @@ def _blur(reach: float) -> Array:
     return diffusion_blur(COSINES, reach)
 
 
-# Share of a uniform environment that a node transmits, by name of its row.
+# Functions for the share of a uniform environment that a node transmits, by name of the node's row.
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
-# Albedo of an anisotropic lobe by MaterialX's environment sum, by category.
+# Functions for the albedo of an anisotropic lobe in MaterialX's environment sum, by node category.
 SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }
-# Lobes with light from the full sphere and values that include no cosine.
+# Lobes that scatter light from all directions of the sphere, and whose values include no cosine.
 SPREAD_NODE = replace(SUBSURFACE_NODE, inputs=("color", "radius", "anisotropy"), value=_spread)
 AROUND = SPREAD_NODE, HAIR_NODE
 
@@ -148,7 +148,7 @@ UNIT = 1e-3  # tolerance for the length of a normal
 
 @dataclass(frozen=True, eq=False)
 class ShadingPoints:
-    """The points at which a graph is evaluated, and their light."""
+    """The points at which a graph is evaluated, and the light at these points."""
 
     wo: Array  # unit vectors to the viewer, in world space
     wi: Array | None  # unit vectors to a distant light; None in a uniform environment
@@ -156,17 +156,17 @@ class ShadingPoints:
     normal: Array  # unit normal of the surface, in world space
     tangent: Array  # unit vector orthogonal to the normal, in world space
     texcoord: Array | None = None
-    most: float = np.inf  # maximum points with different materials whose albedos are integrals
+    most: float = np.inf  # maximum number of different materials with integrated albedos
     round: bool = False  # whether the points lie on the unit sphere
     behind: bool = False  # whether only transmitted light counts
-    opacity: bool = False  # whether lobes in mode T pass all light, times their tint
-    searched: bool = False  # whether the environment sum masks by both alphas, as eonlib's does
+    opacity: bool = False  # whether lobes in mode T pass all light, times the tint
+    searched: bool = False  # whether environment sums use both alphas for masking, as in eonlib
     _lobes: Recent[Bsdf] = field(default_factory=lambda: Recent(CACHED), init=False)
 
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
     ) -> Bsdf:
-        """A lobe of weight 1 in a frame, with its throughput if `layered`, otherwise 0."""
+        """A lobe of weight 1 in a frame; the throughput is 0 unless `layered`."""
         plain = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
         wo, wi = self.local if plain else self.directions(normal, tangent)
 
@@ -178,15 +178,15 @@ class ShadingPoints:
 
         if not plain:
             return scattered()
-        # The same document with another library has the same lobes.
+        # Cache lobes, because the same document with another library has the same lobes.
         key = node, layered, *((name, contents(each)) for name, each in inputs.items())
         return self._lobes.value(key, scattered)
 
     def scattered(self, node: PbrNode, wo: Array, wi: Array | None, inputs: Inputs) -> Array:
         """Light that a lobe sends to the viewer, (N, 3); directions are in the lobe's frame.
 
-        A distant light gives f |cos(theta_i)|, and 0 on the dark side. An environment gives the
-        directional albedo or the transmitted share.
+        For a distant light, the result is f |cos(theta_i)|, or 0 if the light is on the dark side.
+        For an environment, the result is the directional albedo or the transmitted share.
         """
         if wi is None:
             share = LET_THROUGH.get(node.name) if self.behind else node.integral or node.albedo
@@ -205,7 +205,7 @@ class ShadingPoints:
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at each direction; integrals for one material over a picture use a series."""
+        """Albedo at each view; for one material all over a picture, a series replaces integrals."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:
@@ -222,15 +222,15 @@ class ShadingPoints:
         if not turns:
             lobe = "the albedo of so anisotropic a lobe"
             raise NotRun(f"reference: {lobe} takes too long over a picture")
-        # Equal cosines of symmetric points on a sphere differ by roundings.
+        # Round the cosines, because equal cosines of symmetric points on a sphere differ slightly.
         mu = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
         upright = _directions(mu, np.zeros(len(mu)))
-        # All pictures of a document have the same views.
+        # Cache the albedos, because all pictures of a document have the same views.
         integrated = partial(albedo_at, albedo, node, upright, inputs)
         return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
-        """A geometric property by its name in MaterialX; raises NotRun for unknown names."""
+        """A geometric property by the name in MaterialX; raises NotRun for unknown names."""
         known = {"Nworld": self.normal, "Tworld": self.tangent, "UV0": self.texcoord}
         known["Bworld"] = np.cross(self.normal, self.tangent)
         if (value := known.get(name)) is None:
@@ -291,7 +291,7 @@ LOBES = {
 
 NOTHING = Bsdf(np.zeros(3), np.ones(3))  # an absent lobe
 
-# Nodes that combine lobes: by category, the names of their inputs, and a function of the inputs.
+# Nodes that combine lobes, by category: the names of the inputs, and a function of the inputs.
 COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
     "layer": (("top", "base"), layering.layer),
     "mix": (("fg", "bg", "mix"), layering.mix),
@@ -321,7 +321,7 @@ def node_lobe(
     uniform = points.wi is None and row.name in LET_THROUGH
     if row in INNER_NODES and not (points.round or uniform):
         raise NotRun(f"reference: there is no model for this mode of node {node.getCategory()!r}")
-    # All inputs that the model lacks must have their default values.
+    # Every input that the model lacks must have the default value.
     known = {"weight", "normal", "tangent", "curve_direction", FLAG, *FILM, *row.inputs, *row.fixed}
     for port, value in inputs.items():
         default = node.getNodeDef().getActiveInput(port).getValue()
@@ -331,7 +331,7 @@ def node_lobe(
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
-        # MaterialX rounds pi / 2 to float32, which is larger than the model's largest roughness.
+        # MaterialX rounds pi / 2 to float32, which exceeds the largest roughness of the model.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
     tangent = inputs.get("tangent", inputs.get("curve_direction", points.tangent))
@@ -365,7 +365,7 @@ def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
 def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
     """Value of an input: numbers as (1,) or (N,), others as (1, C) or (N, C) with C components.
 
-    Where the lobe's weight is 0, a value may be NaN and is replaced by that of another point.
+    Where the lobe's weight is 0, the value may be NaN, so the value of another point is used.
     """
     kind = node.getNodeDef().getActiveInput(port).getType()
     if kind not in WIDTHS:
@@ -384,7 +384,7 @@ def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
 
 
 def plain(value: Plain) -> Array | bool | str | None:
-    """A MaterialX value as a bool, a string, an array or None; NotRun for a matrix."""
+    """A MaterialX value as a bool, a string, an array or None; raises NotRun for a matrix."""
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, (mx.Matrix33, mx.Matrix44)):
@@ -399,14 +399,14 @@ Value: TypeAlias = Array | bool | str | Bsdf | Mapping[str, Array] | None
 # Names of a node's inputs, and a function of the inputs.
 Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]
 
-# Number of components of each type that has several.
+# Number of components of each type that has more than one component.
 WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 
 def fitted(kind: str, value: Value) -> Value:
-    """A value with the components of a type: numbers are repeated; missing components are 0.
+    """A value converted to a type; a number is repeated for all components.
 
-    A missing alpha is 1.
+    Missing components become 0, but a missing alpha becomes 1.
     """
     width = WIDTHS.get(kind, 1)
     if width == 1 or value is None or isinstance(value, str):
@@ -467,7 +467,7 @@ def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
 
 UNARY, BINARY = ("in",), ("in1", "in2")
 
-# Nodes that compute numbers: by category, the names of their inputs, and a function of the inputs.
+# Nodes that compute numbers, by category: the names of the inputs, and a function of the inputs.
 OPERATIONS: dict[str, Operation] = {
     "constant": (("value",), same),
     "convert": (UNARY, lambda value: np.asarray(value, np.float64)),
@@ -500,7 +500,7 @@ OPERATIONS: dict[str, Operation] = {
 
 # --- volumes --------------------------------------------------------------------------------------
 
-# Volume nodes that a layer may have as its base; their value is the transmittance.
+# Volume nodes that may be the base of a layer. The value of a volume is a transmittance.
 VOLUMES: dict[str, Operation] = {
     "absorption_vdf": (("absorption",), lambda a: transmittance(a, 0.0, METER)),
     "anisotropic_vdf": (("absorption", "scattering"), lambda a, s: transmittance(a, s, METER)),
