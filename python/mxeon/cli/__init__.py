@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command's argument parser. The `run` of parsed arguments is the function to call."""
+    """The command's argument parser. Parsed arguments have the function to call as `run`."""
     root = Parser(prog="mxeon", description=DESCRIPTION, examples=EXAMPLES)
     root.add_argument("--version", action="version", version=f"mxeon {mxeon.__version__}")
     commands = root.add_subparsers(required=True, title="commands", metavar="COMMAND")
@@ -56,7 +56,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _run(arguments: Sequence[str]) -> int:
-    """Run the command; return its exit status, and print a reason unless it is 0."""
+    """Run the command and return the exit status; print a reason for any status except 0."""
     try:
         _check_encoding(arguments)
         options = parser().parse_args(arguments)
@@ -98,7 +98,7 @@ def _check_encoding(arguments: Sequence[str]) -> None:
             argument.encode()
         except UnicodeEncodeError:
             raise InputError(f"arguments must be UTF-8, file names too; got {argument!r}") from None
-        if "\0" in argument:  # possible only from Python, not from a shell
+        if "\0" in argument:  # only Python can pass such an argument; a shell cannot
             raise InputError(f"arguments must have no null character; got {argument!r}")
         if not argument or re.fullmatch("--[^=]+=", argument):
             raise InputError(f"arguments must not be empty; got {' '.join(map(repr, arguments))}")

@@ -40,19 +40,19 @@ from mxeon.shaders.library_export import CLIENTS
 if TYPE_CHECKING:
     from mxeon.report.diff import Report
 
-MANY = 20  # maximum documents before they are grouped by cause
+MANY = 20  # maximum number of documents that are not grouped by cause
 # Maximum lines of each section, including the header of the table of nodes.
 LONGEST = {"material": 4, "node": 4, "cause": 3, "note": 2}
-REASONS = 3  # maximum reasons why checks did not run
+REASONS = 3  # maximum number of listed reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
 ABBREVIATION = re.compile(r"\(([A-Z]+)\)$")  # matches the end of a model's title
-QUOTED_PATH = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # matches a document's own names in a reason
+QUOTED_PATH = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # matches text that differs between documents
 REFUSED = "refused"
 NO_REFERENCE = "no reference"
-# States of a document. If several apply, the first one counts.
+# States of a document. If several states apply, the first state in this order counts.
 STATES = (FAILED, NOT_RUN, REFUSED, DIFFERS, NO_REFERENCE, PASSED)
 PICTURE_CHECKS = ("picture", "finite", DOCUMENT_KEY)
-WHITE_CHECKS = ("environment", "layering", "transmission", "integral")  # white environments
+WHITE_CHECKS = ("environment", "layering", "transmission", "integral")  # all in a white environment
 
 
 def show_run(
@@ -63,8 +63,8 @@ def show_run(
 ) -> int:
     """Write a run's report, print its summary, and return the exit status.
 
-    Document errors in `printed` are not printed again. With a baseline, changes determine the
-    status, not failures; a refused document still counts as misuse.
+    Errors of documents that are in `printed` are not printed again. With a baseline, changes
+    determine the status instead of failures, but a refused document still counts as misuse.
     """
     from mxeon import report
     from mxeon.report import diff
@@ -102,7 +102,7 @@ def _annotations(run: Run) -> Iterator[str]:
 
 
 def _details(run: Run) -> Iterator[Line]:
-    """A line for each check, and for each file of a library in a folder."""
+    """A line for each check, and a line for each file of each library folder."""
     for each in run.results:
         numbers = each.reason or words.explanation(each)
         if each.verdict == PASSED:
@@ -121,7 +121,7 @@ def _line(text: str, verdict: Verdict | None = None) -> Line:
 
 
 def answer(run: Run, full: bool = False) -> list[Line]:
-    """Lines of the summary. Unless it is `full`, each section has a maximum length."""
+    """Lines of the summary. Each section has a maximum length, unless `full` is true."""
     many = len(run.contents) + len(run.refused) > MANY
     sections = {
         "material": [*map(Line, summary_by_cause(run))] if many else [*_materials(run)],
@@ -133,12 +133,12 @@ def answer(run: Run, full: bool = False) -> list[Line]:
     lines += map(_line, (*words.origins(run), *words.not_judged(run)))
     omitted = []
     for name, section in sections.items():
-        # If there are several documents, each has a line.
+        # Each of several documents has a line.
         complete = full or (name == "material" and len(run.contents) != 1)
         lines += section if complete else section[: LONGEST[name]]
         if not complete and len(section) > LONGEST[name]:
             omitted.append(counted(len(section) - LONGEST[name], f"more {name}"))
-    # Begin with the verdict if there are no documents, or something was not judged.
+    # The verdict comes first if there are no documents, or if something was not judged.
     first = run.refused or run.verdict == NOT_RUN or not run.contents
     lines.insert(0 if first else len(lines), _line(run.summary, run.verdict))
     if omitted:
@@ -149,8 +149,8 @@ def answer(run: Run, full: bool = False) -> list[Line]:
 class DocumentState(NamedTuple):
     document: str  # path
     library: str
-    state: str  # a row of STATES
-    cause: str  # equal texts for documents with the same cause
+    state: str  # one of STATES
+    cause: str  # equal text for all documents with the same cause
     referenced: bool = False  # whether all pictures have a reference
 
 
@@ -179,7 +179,7 @@ def summary_by_cause(run: Run) -> list[str]:
 
 
 def _document_states(run: Run) -> Iterator[DocumentState]:
-    """State of each document on each host with each library: that of its worst picture."""
+    """The state of each document's worst picture on each host with each library."""
     for document in run.contents:
         pictures = (
             each
@@ -201,20 +201,20 @@ def _document_states(run: Run) -> Iterator[DocumentState]:
             )
     for document, (fault, *others) in run.refused.items():
         if not fault.startswith(f"{document}: "):
-            document = document.rpartition(" with ")[0]  # refused with this library only
+            document = document.rpartition(" with ")[0]  # refused with a single library
         more = f"; {counted(len(others), 'more fault')}" if others else ""
         cause = QUOTED_PATH.sub("...", fault.removeprefix(f"{document}: ") + more)
         yield DocumentState(document, "", REFUSED, cause)
 
 
 def _cause(result: Result, measured: bool) -> str:
-    """Reason for a document's state, from its worst picture."""
+    """The reason for a document's state, derived from the document's worst picture."""
     if result.verdict == PASSED and result.check == "picture":
         inputs = ", with inputs that the host computed" if measured else ""
         return f"matches the reference{inputs}"
     if result.verdict == PASSED and result.check == DOCUMENT_KEY:
         return "shaders are generated"
-    # Without the size of the difference, documents with the same cause share a line.
+    # Omit the size of the difference, so that documents with the same cause share a line.
     if result.difference and result.diagnosis.first.key in ("", "other_node"):
         return words.appearance(result.difference)
     reason = result.reason or words.diagnosis(result.diagnosis)
@@ -223,12 +223,12 @@ def _cause(result: Result, measured: bool) -> str:
 
 
 def _is_refused(run: Run, document: str, library: str) -> bool:
-    """Whether a document was refused with every library, or with this one."""
+    """Whether a document was refused with every library, or with the given library."""
     return not run.refused.keys().isdisjoint((document, f"{document} with {library}"))
 
 
 def _materials(run: Run) -> Iterator[Line]:
-    """Sentences on materials, worst first; materials that look the same share a sentence."""
+    """Sentences about materials, worst first. Materials with the same look share a sentence."""
     hosts = {each.host for each in run.results if each.check in PICTURE_CHECKS}
     # Name, sentence, rank and verdict of each material on each host.
     rows: list[tuple[str, str, int, Verdict | None]] = []
@@ -254,7 +254,7 @@ def _materials(run: Run) -> Iterator[Line]:
 
 
 def _appearance(run: Run, document: str, results: Sequence[Result]) -> str:
-    """Appearance of a material on one host with each library."""
+    """Text on the appearance of a material on one host, with each library."""
     looks = [(_look(run, document, each), each.library) for each in results]
     rendered = {each.library for each in results}
     for library in _unique([*(each.library for each in run.results), *run.compared]):
@@ -275,7 +275,7 @@ def _appearance(run: Run, document: str, results: Sequence[Result]) -> str:
 
 
 def _look(run: Run, document: str, result: Result) -> str:
-    """Appearance of a material in one picture; wrong nodes may not be visible in it."""
+    """Text on a material in one picture. A picture can be right although a node is wrong."""
     unused = [
         run.is_elsewhere(each, document)
         for each in run.results
@@ -294,7 +294,7 @@ def _is_visible(result: Result) -> bool:
 
 
 def _is_right(result: Result) -> bool:
-    """Whether a check compares a picture with the reference, without a visible difference."""
+    """Whether a picture was compared with a reference and has no visible difference."""
     return result.check == "picture" and result.verdict == PASSED and not _is_visible(result)
 
 
@@ -307,7 +307,7 @@ WRONG, ELSEWHERE, RIGHT = range(3)
 
 
 def _rank(run: Run, result: Result) -> int:
-    """Rank of a node: wrong in a document, wrong only for inputs that no document uses, right."""
+    """Rank of a node: wrong in a document, wrong only for inputs of no document, or right."""
     if result.verdict != FAILED:
         return RIGHT
     if run.is_elsewhere(result):
@@ -324,7 +324,7 @@ def _rank(run: Run, result: Result) -> int:
 
 
 def _nodes(run: Run) -> list[str]:
-    """The table of the documents' nodes, worst first: a header, and a column for each library."""
+    """Lines of the table of the documents' nodes, worst first, with a column for each library."""
     titles = {title for titles in run.contents.values() for title in titles}
     judged = (each for each in run.results if each.subject in titles and each.verdict != NOT_RUN)
     rows = grouped(judged, lambda each: (each.subject, each.host))
@@ -344,7 +344,7 @@ def _nodes(run: Run) -> list[str]:
 
 
 def _cell(run: Run, results: Sequence[Result]) -> str:
-    """Text of a table cell: a node's model, or its error and the check that measured it."""
+    """Text of a table cell: the model of a node, or an error and the check that found the error."""
     if not results:
         return "not judged"
     rank = min(_rank(run, each) for each in results)
@@ -369,7 +369,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
 
 
 def model_of(title: str) -> str:
-    """Title of the model that a node must have, or its abbreviation; `title` is the node's."""
+    """Title, or abbreviation, of the model that the node with this title must have."""
     spec = next(row for row in ALL if row.title == title)
     models = spec.value_candidates if isinstance(spec, ValueSpec) else ()
     name = models[0].title if models else "as specified"
@@ -378,7 +378,10 @@ def model_of(title: str) -> str:
 
 
 def _not_run(run: Run, full: bool, pictures: bool) -> Iterator[Line]:
-    """Reasons why checks did not run, all if `full`; without `pictures`, only those of nodes."""
+    """Reasons why checks did not run. With `full`, all reasons are listed.
+
+    Without `pictures`, the pictures of documents are left out.
+    """
     documents = [each for each in run.contents if each not in run.refused and not pictures]
     not_run = (
         each
@@ -416,7 +419,7 @@ def _remedy(run: Run) -> Iterator[str]:
         or (each.library not in compared and not run.is_elsewhere(each))
     }
     libraries = {each.library for each in run.results}
-    # Defects with a page in docs/upstream are not in eonlib, unless they are unavoidable.
+    # eonlib has none of the defects that have a page in docs/upstream, except unavoidable defects.
     nodes = [issues_of(each) for each in failed if each.check not in PICTURE_CHECKS]
     known = all(issues and not any(each.unavoidable for each in issues) for issues in nodes)
     if "stock" in wrong and (
@@ -438,15 +441,16 @@ def _remedy(run: Run) -> Iterator[str]:
 def _failures(run: Run) -> Iterator[Line]:
     """A line for each page or diagnosis that explains failures.
 
-    Compared libraries come last. Otherwise the order is: failures at the documents' own inputs,
-    failures without a page, failures in the light in which the first picture is most wrong.
+    Failures with compared libraries come last. Otherwise, failures at the documents' own inputs
+    come first, then failures without a page, then failures in the light in which the pictures are
+    wrong.
     """
     failures = [each for each in run.results if each.verdict == FAILED]
     white = any(each.difference and each.difference.scene == "furnace" for each in failures)
 
     def order(result: Result) -> tuple[bool, bool, bool, bool, float]:
         lit = result.check in (WHITE_CHECKS if white else DIRECT)
-        # Errors of albedos and throughputs have a common scale.
+        # Errors of albedos and throughputs have a common scale, so the largest error comes first.
         size = (result.error or 0.0) if white and lit else 0.0
         known = run.is_elsewhere(result), bool(result.pages)
         return result.library in run.compared, *known, not lit, -size
@@ -455,7 +459,7 @@ def _failures(run: Run) -> Iterator[Line]:
         return result.location, run.is_elsewhere(result)
 
     def line(results: Sequence[Result], text: str) -> Line:
-        """A line on failures in one place; those of compared libraries have no color."""
+        """A line on failures with one host and library, with a color for judged libraries."""
         location, elsewhere = place(results[0])
         inputs = ", for inputs that no document uses" if elsewhere else ""
         if results[0].library in run.compared:
@@ -473,7 +477,7 @@ def _failures(run: Run) -> Iterator[Line]:
             explained += pictures
         else:
             yield line(results, _sentence(results))
-    if run.contents:  # the sentences on materials cover pictures
+    if run.contents:  # the sentences on materials already cover pictures
         return
     for results in grouped(explained, place).values():
         names = _unique(name for each in results for _, name in sorted(nodes & _lobes(each)))
@@ -488,7 +492,7 @@ def _lobes(result: Result) -> set[tuple[str, str]]:
 
 
 def _sentence(results: Sequence[Result]) -> str:
-    """The nodes and checks that fail for the same reason, and the reason or its page."""
+    """Text with the nodes and checks that fail for one reason, and with the reason or a link."""
     subjects = _unique(each.subject for each in results)
     nodes = _unique(each.partition(",")[0] for each in subjects)
     checks = ", ".join(_unique(each.check for each in results))

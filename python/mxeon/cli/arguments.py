@@ -53,7 +53,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(epilog=epilog, formatter_class=_Format, **options)
 
     def format_help(self, limits: bool = False) -> str:
-        """The help: if `limits`, only options for untrusted documents, else all other options."""
+        """Help on the options for untrusted documents (with `limits`) or on all other options."""
         help = self._get_formatter()
         if not limits:
             help.add_text(textwrap.fill(self.description or "", 79))
@@ -74,9 +74,8 @@ class Parser(argparse.ArgumentParser):
     ) -> tuple[argparse.Namespace, list[str]]:
         """Report unknown options before other errors, and print help if the command is missing."""
         words = list(sys.argv[1:] if args is None else args)
-        is_command = (
-            self.get_default("run") is not None
-        )  # False for a command with actions, such as `report`
+        # A command with actions, such as `report`, has no function to run.
+        is_command = self.get_default("run") is not None
         if not (words or is_command):
             self.print_help()
             self.error("choose a command")
@@ -114,7 +113,7 @@ class _HelpLimits(argparse.Action):
 def add_command(
     commands: Commands, name: str, summary: str, run: Run | None, *examples: str
 ) -> argparse.ArgumentParser:
-    """Add a command, or an action of a command. A command with actions has no `run`."""
+    """Add a command, or an action of a command. `run` is None for a command that has actions."""
     sentence = f"{summary[0].upper()}{summary[1:]}."
     command: argparse.ArgumentParser = commands.add_parser(
         name, help=summary, description=sentence, examples=examples
@@ -172,10 +171,10 @@ def add_shared(command: argparse.ArgumentParser, *names: str) -> None:
 
 
 def use_materialx(folder: str | None) -> None:
-    """Import MaterialX from a folder, here and in worker processes; None imports nothing.
+    """Import MaterialX from a folder, in this process and in worker processes; None has no effect.
 
-    Raises InputError if the folder has no MaterialX that can be imported, or if another MaterialX was
-    imported before.
+    Raises InputError if the folder has no MaterialX that can be imported, or if another MaterialX
+    was imported before.
     """
     if folder is None:
         return
@@ -198,7 +197,7 @@ def use_materialx(folder: str | None) -> None:
 def inputs(
     options: argparse.Namespace, documents: Sequence[str] = (), *others: AnyPath | None
 ) -> Iterator[AnyPath]:
-    """Files that a command may read and must not replace; see `mxeon.io.files.check_output`."""
+    """Files that a command may read and therefore must not replace."""
     from mxeon.shaders.document.references import files_read
 
     yield from filter(None, others)
@@ -207,7 +206,7 @@ def inputs(
 
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:
-    """Add the options of `mxeon.shaders.document.policy`, and --allowCode if `runs_code`."""
+    """Add the options of `mxeon.shaders.document.policy`; --allowCode only if `runs_code`."""
     command.add_argument(
         "--path",
         action="append",

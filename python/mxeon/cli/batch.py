@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Run generate and render in worker processes, since a document may crash them."""
+"""Runs `generate` and `render` in worker processes, because a document may crash a process."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class WorkerCrashed(NotRun):
 
 @dataclass(frozen=True)
 class BatchResult:
-    """The value of a job, or the error that prevented it."""
+    """The value of a job, or the error that ended the job."""
 
     value: Any
     warnings: tuple[str, ...] = ()
@@ -36,9 +36,10 @@ class BatchResult:
 def run_batch(
     work: Callable[[Any], Any], documents: Sequence[Any], workers: int, timeout: float
 ) -> Generator[BatchResult, None, None]:
-    """Run `work` on each document, and yield results in order; close it to stop the processes.
+    """Run `work` on each document, and yield results in order.
 
-    `work` must be importable by name. `timeout` is the maximum time of a document in seconds.
+    Closing the generator stops the processes. `work` must be importable by name. `timeout` is the
+    maximum time of a document in seconds.
     """
     if workers < 0:
         raise InputError(f"workers must be at least 0; got {workers}")
@@ -78,7 +79,7 @@ class Source:
         return f"{self.file}: {self.target}"
 
 
-ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # suffixes, as in MaterialX's generateshader
+ENDINGS = {"pixel": ".frag", "vertex": ".vert"}  # suffixes of MaterialX's generateshader
 
 
 def stem(file: str) -> str:
@@ -87,7 +88,7 @@ def stem(file: str) -> str:
 
 
 def shader_texts(source: Source, element: str | None, **options: Any) -> dict[str, str]:
-    """Shader texts of a document, keyed by file name; `mxeon.generate` describes `options`."""
+    """Texts of a document's shaders, keyed by file name. `mxeon.generate` has the same options."""
     from mxeon.shaders.generation import generate
 
     texts = {}
@@ -112,9 +113,9 @@ def picture(
 ) -> tuple[Any, dict[str, str]]:
     """Render a document's only material; return linear pixels, (size, size, 3), and metadata.
 
-    The default scene is a shader ball in the studio, or a sphere lit from the side, with a warning,
-    on hosts that draw no images. `environment` is a latitude-longitude image. A LobeWarning reports
-    lobes that the host cannot render correctly.
+    The default scene is a shader ball in the studio. Hosts that draw no images show a sphere that
+    is lit from the side, and issue a warning. `environment` is a latitude-longitude image. A
+    LobeWarning reports lobes that the host cannot render correctly.
     """
     from mxeon.conformance import reference
     from mxeon.hosts import open_host, path_tracer

@@ -142,7 +142,7 @@ def run(options: argparse.Namespace) -> int:
             nodes=options.node,
             progress=_importing(progress) if options.report else progress,
             refuse=refuse,
-            # Unless the user names libraries, judge documents with stock MaterialX, too.
+            # Documents are also judged with stock MaterialX, unless the user names libraries.
             compared="stock" if options.files and not options.library else (),
             seed=options.seed,
             methods=arguments.methods(options),
@@ -158,7 +158,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _baseline(options: argparse.Namespace) -> Report:
-    """Read the accepted run before --report moves earlier results away, even if it is invalid."""
+    """Read the accepted run before --report moves earlier results away.
+
+    If the accepted run is invalid, the earlier results are moved before the error is raised.
+    """
     from mxeon.conformance.run.journal import Journal
     from mxeon.report.diff import read_results
 
@@ -172,7 +175,7 @@ def _baseline(options: argparse.Namespace) -> Report:
 
 
 def _importing(progress: output.Progress) -> Callable[[Iterable[T], int], Iterator[T]]:
-    """Show progress, and import the report's packages while the workers are busy."""
+    """Show progress, and import the packages of the report while the workers are busy."""
 
     def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):

@@ -13,7 +13,7 @@ from mxeon.cli.batch import run_batch
 from mxeon.cli.output import fail, show, status_of, warn
 from mxeon.errors import PASSED
 
-DOCUMENT_LIMIT = 300  # maximum shaders of a document: a page of 3 MB, made in 10 s
+DOCUMENT_LIMIT = 300  # maximum shaders of a document; the page has 3 MB and takes 10 s
 
 
 def add_parser(commands: arguments.Commands) -> None:

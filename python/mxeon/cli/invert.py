@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon invert`: compute rho from a target albedo."""
+"""`mxeon invert`: compute EON's input color, rho, from a target albedo."""
 
 import argparse
 from collections.abc import Callable

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon kit`: test a renderer by images that it renders from the conformance kit."""
+"""`mxeon kit`: test a renderer by the images that it renders of the conformance kit's scenes."""
 
 import argparse
 from contextlib import nullcontext

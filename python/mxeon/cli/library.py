@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon library`: print the folder of eonlib and how to load it, or copy it."""
+"""`mxeon library`: print the folder of eonlib and how to load the folder, or copy eonlib."""
 
 import argparse
 from pathlib import Path
@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _explain(folder: Path, documents: Path) -> None:
-    """Print the folder of eonlib, and how each renderer loads it."""
+    """Print the folder of eonlib, and instructions for each renderer that loads the folder."""
     from mxeon.shaders.library_export import recipes
 
     show(f"folder                {folder}")

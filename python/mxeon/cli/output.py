@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages on standard error, progress, and closed streams."""
+"""Prints messages, the summary and progress, and handles closed streams."""
 
 from __future__ import annotations
 
@@ -19,15 +19,12 @@ if TYPE_CHECKING:
     from mxeon.conformance.results import Verdict
 
 COLUMNS = 100  # width of a terminal if it is unknown
-COLORS: dict[str | None, int] = {
-    "passed": 32,
-    "failed": 31,
-    "not run": 33,
-}  # ANSI codes, keyed by verdict
+# ANSI codes, keyed by verdict.
+COLORS: dict[str | None, int] = {"passed": 32, "failed": 31, "not run": 33}
 
 
 def open_streams() -> None:
-    """Open standard streams that are missing, because workers print to them.
+    """Open standard streams that are missing, because worker processes print to the streams.
 
     Characters that a stream cannot encode are printed as backslash escapes.
     """
@@ -59,7 +56,7 @@ def flush(status: int) -> int:
 
 
 def discard(stream: IO[str]) -> None:
-    """Redirect a failed stream to nothing; otherwise it fails again when Python ends."""
+    """Redirect a failed stream to the null device, so that Python can flush the stream at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
@@ -82,7 +79,7 @@ def fail(status: int, *messages: object) -> int:
 
 
 def show(name: object) -> None:
-    """Print the name of an output file; see `on_one_line`."""
+    """Print the name of an output file on one line."""
     print(on_one_line(name))
 
 
@@ -92,7 +89,7 @@ def on_one_line(name: object) -> str:
 
 
 class Line(str):
-    """A line of the summary, with the verdict that it states."""
+    """A line of the summary, and the verdict that the line states."""
 
     verdict: Verdict | None
 
@@ -103,7 +100,7 @@ class Line(str):
 
 
 def wrapped(lines: Iterable[Line]) -> str:
-    """Wrap lines to a terminal's width and color them by verdict; else keep whole lines."""
+    """The lines as text. On a terminal, lines are wrapped, and are colored by verdict."""
     if not sys.stdout.isatty():
         return printable("\n".join(lines))
     width = shutil.get_terminal_size((COLUMNS, 1)).columns
@@ -130,12 +127,12 @@ def warn(message: object) -> None:
 
 
 def show_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a Python warning; see `warnings.showwarning`."""
+    """Print a Python warning, in place of `warnings.showwarning`."""
     warn(message)
 
 
 def _print_line(line: str) -> None:
-    """Print a line on standard error, unless it is closed."""
+    """Print a line on standard error, unless standard error is closed."""
     try:
         print(f"{Progress.take()}mxeon: {line}", file=sys.stderr, flush=True)
     except OSError:
@@ -143,7 +140,7 @@ def _print_line(line: str) -> None:
 
 
 class Progress:
-    """A progress line on a terminal; `label` returns the name of a step."""
+    """A progress line on a terminal. The function `label` returns the name of a step."""
 
     visible = ""  # the progress line on the terminal
 
@@ -166,13 +163,13 @@ class Progress:
 
     @classmethod
     def take(cls) -> str:
-        """Forget the progress line, and return the text that erases it."""
+        """Forget the progress line, and return the control codes that erase the line."""
         erase = "\r\033[K" if cls.visible else ""
         cls.visible = ""
         return erase
 
     def __call__(self, steps: Iterable[Any], total: int | None = None) -> Iterator[Any]:
-        """Iterate over the steps, and show each one."""
+        """Iterate over the steps, and show the progress."""
         total = len(steps) if total is None and isinstance(steps, Sized) else total
         begin = 0.0
         self.show(f"0 of {total}")

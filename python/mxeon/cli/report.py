@@ -79,7 +79,7 @@ def run_schema(options: argparse.Namespace) -> int:
 
 
 def run_diff(options: argparse.Namespace) -> int:
-    """Print the differences of two reports; return FAILED if a check got worse, NOT_RUN if lost."""
+    """Print how two reports differ; return FAILED if a check got worse, NOT_RUN if one is lost."""
     from mxeon.report.diff import compare, lines, read_results, status, to_json
 
     changes = compare(read_results(options.before), read_results(options.after))

@@ -21,16 +21,16 @@ from mxeon.shaders.functions import source
 
 __all__ = ["document_sources", "page", "page_data", "sky_of"]
 
-TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields stored in a shared table
+TEXTS, PARAGRAPH = ("pixel", "paths", "document"), "\n\n"  # fields whose paragraphs are shared
 MARK = "%DATA%"  # the template's placeholder for the data
 # Escape characters that have a meaning in HTML and could end the script element.
 ESCAPES = str.maketrans({sign: f"\\u{ord(sign):04x}" for sign in "<>&\u2028\u2029"})
 
 
 def page_data(documents: Iterable[tuple[ShaderSource, ...]] = (), pages: str = "") -> PageData:
-    """The data of a page; `documents` has the `document_sources` of each document.
+    """The data of a page. `documents` has the `document_sources` of each document.
 
-    `pages` is the address of the pages of `docs/upstream`, with {} for the name of a page, or "".
+    `pages` is the address of the pages in docs/upstream, with {} in place of a page's name, or "".
     """
     added = (
         replace(each, id=f"document/{position}/{each.id}")
@@ -55,7 +55,7 @@ def page_data(documents: Iterable[tuple[ShaderSource, ...]] = (), pages: str = "
 def page(data: PageData) -> str:
     """The page with its data, as self-contained HTML.
 
-    Text of documents is escaped JSON, without characters that have a meaning in HTML.
+    The text of documents is stored as escaped JSON, without characters that have a meaning in HTML.
 
         >>> "</b>" in page(PageData("1", "1", "</b>", ()))
         False
@@ -68,7 +68,7 @@ def page(data: PageData) -> str:
 
 
 def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
-    """Store each paragraph, reference and image once; `explorer/src/texts.ts` expands them."""
+    """Store each paragraph, reference and image once. `explorer/src/texts.ts` restores all uses."""
     places: dict[str, int] = {}
     references: list[object] = []
     images: dict[tuple[int, int, str], int] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types of a page's data, as in `explorer/src/data.ts`, which describes the fields."""
+"""Types of a page's data. `explorer/src/data.ts` has the same types and describes the fields."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -11,7 +11,7 @@ Direction: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Models:
-    """Names of a node's models if its input energy_compensation is on and off."""
+    """Names of a node's models with the input energy_compensation on and off."""
 
     on: str
     off: str
@@ -87,10 +87,10 @@ class ReferenceTable:
 
 @dataclass(frozen=True)
 class Checked:
-    """Verdict of `mxeon check` for a material on gl.
+    """Verdict of `mxeon check` for a material on the host gl.
 
-    - `kind`: "correct", "wrong", "differs" if the specification permits the difference, "within" if
-      it is visible but within the tolerance, or "unknown" if there is no reference.
+    - `kind`: "correct", "wrong", "differs" (the specification permits the difference), "within"
+      (the difference is visible, but within the tolerance), or "unknown" (there is no reference).
     """
 
     kind: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources of a page from documents: generated ESSL, and inputs with their ranges."""
+"""Sources that documents add to a page: generated ESSL, and inputs with their ranges."""
 
 import math
 import warnings
@@ -33,13 +33,13 @@ from mxeon.shaders.nodes import DIFFUSE_NODES, EON, FLAG, OREN_NAYAR
 
 LIBRARIES = ("eonlib", "stock")
 LAYOUT = ("comment", "newline")
-# Maximum number of materials in a document that are judged, at 2 s each.
+# Maximum number of a document's materials that are judged, because judging a material takes 2 s.
 REFERENCES = 20
-LARGEST_IMAGE = 256  # maximum texels on a side, a quarter of a mebibyte
-ALL_IMAGES = 64 * LARGEST_IMAGE**2  # maximum texels of a document, 22 MB of a page
+LARGEST_IMAGE = 256  # maximum texels on a side; such an image has a quarter of a mebibyte
+ALL_IMAGES = 64 * LARGEST_IMAGE**2  # maximum texels of a document; these add 22 MB to a page
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
-# Intended models of the diffuse nodes, with the flag on and off.
+# Intended models of the diffuse nodes, with the input energy_compensation on and off.
 MEANT = {OREN_NAYAR: data.Models("eon", "qon"), EON: data.Models("eon", "eon")}
 
 
@@ -54,7 +54,7 @@ def document_sources(
     sources: list[data.ShaderSource] = []
     contents = read_documents([file], [LIBRARIES[0]], policy, 0, 0.0).contents
     titles = contents.get(file, ())
-    # Both libraries share references, by element, and images, by file.
+    # Both libraries share references, keyed by element, and images, keyed by file.
     references: dict[str, data.ReferenceTable | None] = {}
     images: dict[str, data.Texels | None] = {}
     for half, each in zip(LIBRARIES, (LIBRARIES[0], library), strict=True):
@@ -64,7 +64,7 @@ def document_sources(
             if half == LIBRARIES[0] or library != LIBRARIES[1]:
                 raise
             continue  # stock MaterialX lacks a node
-        # Read each image once, and limit its size so that all images fit.
+        # Read each image once, and limit the size of each image so that all images fit.
         check_images(shaders, policy)
         names = image_files(shaders)
         side = min(LARGEST_IMAGE, math.isqrt(ALL_IMAGES // max(len(names), 1)))
@@ -92,7 +92,7 @@ SKY_ROWS = 128  # twice the rows of the page's built-in environment
 
 
 def sky_of(file: str) -> data.Texels:
-    """Read a latitude-longitude image. As in `mxeon render`, its middle faces the viewer."""
+    """Read a latitude-longitude image. The middle of the image faces the viewer."""
     pixels = read_latlong(file)
     whole = oiio.ImageBuf(np.ascontiguousarray(np.roll(pixels, pixels.shape[1] // 2, axis=1)))
     area = oiio.ROI(0, 2 * SKY_ROWS, 0, SKY_ROWS, 0, 1, 0, 3)
@@ -103,7 +103,7 @@ def sky_of(file: str) -> data.Texels:
 
 
 def path_texts(document: str, policy: Policy = DEFAULT) -> dict[str, str]:
-    """Path-tracing code of a document's materials, by element; empty if one mixes surfaces."""
+    """Path-tracing code of materials, keyed by element; empty if a material mixes surfaces."""
     with warnings.catch_warnings(), suppress(InterfaceError):
         warnings.simplefilter("ignore")  # the warnings were already reported
         made = generate(document, "essl", profile="path", uniforms=True, policy=policy)
@@ -115,7 +115,7 @@ KINDS = {PASSED: "correct", DIFFERS: "differs", FAILED: "wrong", NOT_RUN: "unkno
 
 
 def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict[str, data.Checked]:
-    """Verdicts of `mxeon check` on gl, by element; empty if gl does not run."""
+    """Verdicts of `mxeon check` on the host gl, keyed by element; empty if gl does not run."""
     try:
         with open_host("gl") as host, warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the warnings were already reported
@@ -148,7 +148,7 @@ def _pages(titles: Iterable[str], library: str) -> tuple[str, ...]:
 
 
 def document_text(document: mx.Document) -> str:
-    """A document with its includes as XML. MaterialX's writer does not escape `<` in attributes."""
+    """XML of a document and its includes. MaterialX's writer does not escape `<` in attributes."""
     root = _tree(document)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
@@ -172,7 +172,7 @@ def shader_source(
     library: str,
     images: Mapping[str, data.Texels | None] = MappingProxyType({}),
 ) -> data.ShaderSource:
-    """The page's source of a generated ESSL shader; `images` has its images by file."""
+    """The page's source for a generated ESSL shader. `images` has images, keyed by file."""
     source = data.ShaderSource(
         id=name,
         title=title,
@@ -196,7 +196,7 @@ def shader_source(
     connected = any(
         each.getConnectedOutput() or each.getConnectedNode() for each in node.getInputs()
     )
-    # The intended model is that of the material only if weight and opacity are 1.
+    # A lobe's intended model is the model of the material only if weight and opacity are 1.
     factors = {port.path.rpartition("/")[2]: port.value for port in source.inputs}
     whole = factors.get("weight") == factors.get("opacity") == 1.0
     if connected or not (color and roughness and whole):
@@ -205,7 +205,7 @@ def shader_source(
 
 
 def _ports(shader: Shader, images: Mapping[str, data.Texels | None]) -> Iterator[data.ShaderInput]:
-    """Inputs that are numbers or images; members of structures are separate inputs."""
+    """Inputs of a shader that are numbers or images. Members of structures are separate inputs."""
     for port in shader.inputs:
         if port.type == "filename":
             if port.value:
@@ -218,7 +218,7 @@ def _ports(shader: Shader, images: Mapping[str, data.Texels | None]) -> Iterator
 def _by_effect(
     ports: tuple[data.ShaderInput, ...], document: mx.Document
 ) -> tuple[data.ShaderInput, ...]:
-    """Sort inputs: those that the document sets, defaults, then inputs without effect."""
+    """Sort inputs: first inputs set by the document, then defaults, then inputs without effect."""
     values = {port.path: port.value for port in ports}
 
     def rank(port: data.ShaderInput) -> int:
@@ -226,7 +226,7 @@ def _by_effect(
         words = name.split("_")
         stems = ["_".join(words[:count]) for count in range(1, len(words))]
         gates = {"weight", *stems, *(f"{stem}_weight" for stem in stems)} - {name}
-        unused = name == "default" and f"{node}/file" in values  # default color of an image
+        unused = name == "default" and f"{node}/file" in values  # color for a missing image
         if unused or any(values.get(f"{node}/{gate}") == 0.0 for gate in gates):
             return 2
         return 0 if document.getDescendant(port.path) else 1
@@ -236,7 +236,7 @@ def _by_effect(
 
 def _port(shader: Shader, port: Input) -> data.ShaderInput:
     """An input with its label and range, but without its value."""
-    # Attributes come from the input's own element, or else from the definition of its node.
+    # Attributes come from the input's own element, or else from the definition of the node.
     parent, _, name = port.path.rpartition("/")
     node = shader.document.getDescendant(parent) if parent else None
     definition = node.getNodeDef() if isinstance(node, mx.Node) else None
@@ -275,7 +275,7 @@ def _short(value: Plain) -> Plain:
 
 
 def _texels(path: str, side: int) -> data.Texels | None:
-    """Read an image, scaled down to at most `side` texels on a side; None without a file."""
+    """Read an image, scaled down to at most `side` texels on a side; None for a missing file."""
     if not Path(path).is_file():
         return None
     pixels = read_texture(path)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Float64 values of the models at fixed pairs of directions, for comparison in a browser.
 
-Values are rounded to DIGITS significant digits, a relative error of 5e-8, less than any shader's.
+Values are rounded to DIGITS significant digits, so the relative error is at most 5e-7.
 """
 
 from collections.abc import Iterator
@@ -26,11 +26,11 @@ from mxeon.shaders.nodes import DIFFUSE_NODES
 from mxeon.shaders.scene import direction
 
 DIGITS = 7
-POLES = (8.0, 35.0, 60.0, 80.0)  # degrees from the normal, of both directions
-# Azimuths between the directions, in degrees, without 180: smooth lobes have no finite value in the
-# mirror direction.
+POLES = (8.0, 35.0, 60.0, 80.0)  # angles of both directions from the normal, in degrees
+# Differences in azimuth between the two directions, in degrees. The mirror direction, 180, is left
+# out, because smooth lobes are not finite there.
 AZIMUTHS = (0.0, 100.0, 176.0)
-VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines of views in a white environment
+VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines of the angles of view in a white environment
 LOBES = ("BSDF", "VDF", "surfaceshader")
 FILM = "thinfilm_thickness"
 
@@ -40,12 +40,12 @@ SEEN = float32([direction(0.0, float(np.degrees(np.arccos(mu)))) for mu in VIEWS
 
 
 def pairs() -> tuple[tuple[Direction, Direction], ...]:
-    """The pairs (wo, wi) that all references share."""
+    """The pairs of directions (wo, wi) at which all references have values."""
     return tuple(zip(_directions(WO), _directions(WI), strict=True))
 
 
 def views() -> tuple[Direction, ...]:
-    """The views in a white environment that all references share."""
+    """The directions of view at which all references have values in a white environment."""
     return _directions(SEEN)
 
 
@@ -65,7 +65,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
             host = reference.Reference()
             direct = np.pi * host.evaluate(shader, WO, WI, {}, "direct")
             white = host.evaluate(shader, SEEN, SEEN, {}, "environment")
-    except (NotRun, ValueError):  # a lobe has no model, or an input is outside its domain
+    except (NotRun, ValueError):  # a lobe has no model, or an input is outside the model's domain
         return None
     if not (np.isfinite(direct).all() and np.isfinite(white).all()):
         return None
@@ -85,7 +85,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
 
 
 def _rows(node: mx.Node) -> tuple[PbrSpec, ...]:
-    """Specs of nodes with a thin film if the node has one, otherwise specs of all other nodes."""
+    """Specs of nodes with a thin film if the node has a thin film, otherwise all other specs."""
     film = node.getInput(FILM)
     return FILM_SPECS if film is not None and film.getValue() != 0.0 else (*PLAIN_LOBES, HAIR)
 
@@ -104,7 +104,7 @@ def _forms(spec: PbrSpec, shader: Shader) -> Iterator[ShaderForm]:
 
 
 def _batches(spec: PbrSpec, shader: Shader) -> tuple[Batch, Batch]:
-    """The pairs of `pairs` and the views of `views`, with the inputs of a shader of one node."""
+    """All pairs and all views as batches, with the inputs of a shader that has a single node."""
     values = {port.path.rpartition("/")[2]: np.asarray(port.value) for port in shader.inputs}
     inputs = {name: values[name] for name in (*spec.row.inputs, "weight") if name in values}
     return Batch(WO, WI, inputs), Batch(SEEN, SEEN, inputs)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A local server of the explorer's page, which also receives files dropped on the page.
 
-Only the page itself can send files: before a PUT from another site, browsers request permission,
-which this server does not give. The server checks the host name of requests, so that no other domain
-can point to this address.
+Only the page itself can send files. Before a page of another site sends a PUT, browsers request
+permission, which this server does not give. The server also checks the host name of requests, so
+that no other domain can point to the server's address.
 """
 
 from collections.abc import Callable
@@ -16,11 +16,11 @@ from mxeon.errors import MxeonError, one_line
 
 LARGEST = 2**30  # maximum bytes of a received file
 
-Make = Callable[[list[str], str | None], str]  # arguments: documents, environment map
+Make = Callable[[list[str], str | None], str]  # arguments: documents, and environment map or None
 
 
 class Server(ThreadingHTTPServer):
-    """A server of one page. Dropped files are stored in `folder`."""
+    """A server of one page. Files that users drop on the page are stored in `folder`."""
 
     daemon_threads = True
 
@@ -31,7 +31,10 @@ class Server(ThreadingHTTPServer):
         self.host = f"127.0.0.1:{self.server_port}"
 
     def receive(self, path: PurePosixPath, content: bytes) -> None:
-        """Store a file "/files/..." or "/light/..." and show it; MxeonError if it is invalid."""
+        """Store a file sent to "/files/..." or "/light/...", and make a page that shows the file.
+
+        Raise MxeonError if the file is invalid.
+        """
         _, kind, *parts = path.parts
         target = self.folder.joinpath(kind, *parts)
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -42,7 +45,7 @@ class Server(ThreadingHTTPServer):
         elif target.suffix.lower() == ".mtlx":
             files = [str(target), *(each for each in files if each != str(target))]
         else:
-            return  # an image that a document may use
+            return  # the file is an image that a document may use
         self.page = self.make(files, light)
         self.files, self.light = files, light
 
@@ -79,4 +82,4 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(content)
 
     def log_message(self, *_: object) -> None:
-        """Print nothing: warnings about documents are printed where the page is made."""
+        """Print nothing. The function that makes the page prints warnings about documents."""

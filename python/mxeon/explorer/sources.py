@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources on every page: models, renderers' variants of them, and lobes of both libraries."""
+"""Sources on every page: models, wrong variants of models, and lobes of both libraries."""
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -49,10 +49,10 @@ LACQUER = """    <input name="base_color" type="color3" value="0.55, 0.12, 0.08"
 
 @dataclass(frozen=True)
 class ComparedMaterial:
-    key: str  # name in the page's addresses
+    key: str  # name of the material in addresses of the page
     title: str
     text: str  # a MaterialX document
-    subjects: tuple[str, ...]  # titles of its nodes in checks
+    subjects: tuple[str, ...]  # titles of the material's nodes in checks
 
     @property
     def pages(self) -> tuple[str, ...]:
@@ -68,7 +68,7 @@ class ComparedMaterial:
 
 
 def _lobe(key: str, title: str, category: str, inputs: Inputs, *modes: str) -> ComparedMaterial:
-    """A material with one BSDF node; checks identify it by its category and modes."""
+    """A material with one BSDF node. Checks identify the node by category and modes."""
     text = material_text(category, inputs, types=input_types(category))
     subjects = tuple(f"{category}, {mode}" for mode in modes) or (category,)
     return ComparedMaterial(key, title, text, subjects)
@@ -106,9 +106,9 @@ MATERIALS = (
 
 @lru_cache
 def measured_models(library: str, node: str) -> Models | None:
-    """The models that a node is nearest to on gl, with its flag on and off.
+    """The models nearest to a node on the host gl, with energy_compensation on and off.
 
-    None if gl does not run here, or no known model is close.
+    None if gl does not run here, or if no known model is close.
     """
     try:
         with open_host("gl") as host:
@@ -123,7 +123,7 @@ def measured_models(library: str, node: str) -> Models | None:
 
 
 def _nearest(case: Case) -> str:
-    """Name of the nearest model by values; the albedo decides among models with the same BRDF."""
+    """Name of the model with the nearest values. The albedo decides if models have the same BRDF."""
     rows = {row.title: row for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
     value, albedo = (
         min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))
@@ -139,7 +139,7 @@ GENERATED = "Generated shaders"
 FAMILY = "Models, eonlib's functions"
 VARIANTS = "What renderers do instead"
 
-# The page lists these models first. A rough diffuse node has one of the first two.
+# The first models on the page. A rough diffuse node has one of the first two models.
 FIRST = ("eon", "qon", "fon", "lambert")
 
 # Renderers with a wrong model: title, actual and intended model, and page of docs/upstream.
@@ -167,14 +167,14 @@ def node_sources() -> tuple[ShaderSource, ...]:
 
 @lru_cache
 def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
-    """Sources of a material with both libraries."""
+    """Sources of a material with eonlib and with stock MaterialX."""
     shaders = {
         library: generate(material.text, "essl", library=library, lights=True)[0]
         for library in LIBRARIES
     }
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
-    # The page has permitted forms of single lobes only, so `mxeon check` judges combinations.
+    # The page knows permitted forms of single lobes only, so `mxeon check` judges combinations.
     several = reference and not reference.forms and OREN_NAYAR not in material.text
     judged = LIBRARIES if several else ()
     with temporary_folder("mxeon-explore-") as folder:
@@ -201,7 +201,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
 
 
 def model_sources() -> tuple[ModelSource, ...]:
-    """Sources of the models and of renderers' variants of them."""
+    """Sources of the models, and of the variants that renderers implement instead of the models."""
     names = [*FIRST, *(row.name for row in DIFFUSE_MODELS if row.name not in FIRST)]
     family = (
         ModelSource(f"model/{name}", diffuse_model(name).title, FAMILY, name, name)

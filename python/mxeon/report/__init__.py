@@ -27,7 +27,7 @@ from mxeon.io.files import AnyPath, below, check_output, one_name, replacing, wr
 from mxeon.io.images import without_threads, write_exr, write_png
 from mxeon.report.junit import to_junit
 
-PAGES = "upstream"  # folder of the pages on defects, in the report's folder
+PAGES = "upstream"  # subfolder of a report for pages on defects
 
 JSON_FORMAT = 5
 SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifier of `mxeon.report.schema.schema()`
@@ -42,30 +42,32 @@ def to_json(run: Run) -> str:
     """A run as JSON text.
 
     `mxeon report schema` prints the JSON Schema. Non-finite numbers are the strings "NaN",
-    "Infinity" and "-Infinity"; missing values are null. Keys:
+    "Infinity" and "-Infinity". Missing values are null. The keys are:
 
-    - $schema: identifier of the JSON Schema.
-    - format: version of this layout, raised when a key changes or is removed.
-    - verdict: "passed", "failed" or "not run"; a check may be "differs", for a difference that the
-      specification permits; counts: number of checks by verdict.
-    - passed: whether everything requested ran and nothing failed; exit_status: of the command.
-    - sentence: the verdict as a sentence; seconds: duration of the run, or null.
-    - missing: items that an interrupted run has not finished.
-    - refused: refused documents; errors: their faults.
-    - compared: libraries judged only for comparison; verdict, counts and sentence ignore them.
-    - version: version of mxeon; software: versions by name; documents: paths; notes: texts.
-    - libraries: for each folder, its own files ("folder") and files that complete it ("MaterialX").
-    - unjudged: pairs of an item that no check judges, and the reason.
-    - hosts: objects of name, version, device.
-    - results: objects with the fields of `mxeon.conformance.results.Result`; control is null or an
-      object of variant, error, caught; quantity is null if nothing was measured; diagnosis has
-      causes, most important first, and distances to the known models. Scripts should compare
-      kinds, keys and regions, not sentences.
-    - elsewhere: failures for inputs that a document does not use, as objects of document, check,
+    - $schema: Identifier of the JSON Schema.
+    - format: Version of this layout, which increases when a key changes or is removed.
+    - verdict: "passed", "failed" or "not run". The verdict of a check may also be "differs", for a
+      difference that the specification permits. `counts` has the number of checks by verdict.
+    - passed: Whether everything requested ran and nothing failed. `exit_status` is the command's.
+    - sentence: The verdict as a sentence. `seconds` is the duration of the run, or null.
+    - missing: Items that an interrupted run has not finished.
+    - refused: Refused documents. `errors` has the faults of these documents.
+    - compared: Libraries judged only for comparison, which verdict, counts and sentence ignore.
+    - version: Version of mxeon. `software` has versions by name, `documents` paths, and `notes`
+      texts.
+    - libraries: For each folder, the folder's own files ("folder") and added files ("MaterialX").
+    - unjudged: Pairs of an item that no check judges, and the reason.
+    - hosts: Objects with name, version, device.
+    - results: Objects with the fields of `mxeon.conformance.results.Result`. The field control is
+      null or an object with variant, error, caught. The field quantity is null if nothing was
+      measured. The field diagnosis has causes, most important first, and distances to the known
+      models. Scripts should compare kinds, keys and regions, not sentences.
+    - elsewhere: Failures for inputs that a document does not use, as objects with document, check,
       subject, host, library.
-    - pictures: objects of document, element, host, library, scene; exr, png and reference, which
-      are paths relative to the JSON file; and difference from the reference, which is an object of
-      scene, largest, highlight, visible. Reference and difference may be null.
+    - pictures: Objects with document, element, host, library, scene, exr, png, reference,
+      difference. The fields exr, png and reference are paths relative to the JSON file. The field
+      difference is an object with scene, largest, highlight, visible. Reference and difference may
+      be null.
     """
     data = {
         "$schema": SCHEMA,
@@ -119,14 +121,17 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
 
 
 def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
-    """File names for pictures without suffix: ASCII, and distinct even if case is ignored."""
+    """File names without suffix for pictures.
+
+    The names are in ASCII, and are distinct even if case is ignored.
+    """
     names, uses = [], Counter[str]()
     for picture in pictures:
         document = Path(picture.document).stem
         words = (document, picture.element, picture.host, picture.library, picture.scene)
         name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
         uses[name.lower()] += 1
-        # Only numbered names have a sixth word, so they cannot collide with other names.
+        # Only numbered names have a sixth word, so numbered names cannot equal other names.
         names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
     return tuple(names)
 
@@ -134,17 +139,17 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
 def write(run: Run, folder: str | PathLike[str]) -> Path:
     """Write report.html, results.json, junit.xml and pictures/ into `folder`.
 
-    Pictures and references are EXR and PNG files; upstream/ has pages on defects that explain
-    failures. Each file is written completely or not at all, and the page last. If `check` had no
-    folder, the documents are first drawn in the studio.
+    Pictures and references are EXR and PNG files. The subfolder upstream/ has pages on defects that
+    explain failures. Each file is written completely or not at all, and report.html is written
+    last. If `check` had no folder, the documents are first drawn in the studio.
 
-    Returns the page's path. Raises InputError rather than replace a document, a library or the
-    run's journal; OSError if a file cannot be written; ImportError without the `report` extra.
+    Returns the path of report.html. Raises InputError rather than replace a document, a library or
+    the run's journal; OSError if a file cannot be written; ImportError without the `report` extra.
     """
     folder = Path(one_name("folder", folder))
     check_output(folder, _inputs(run), replaced=REPORT)
     if run.policy:
-        from mxeon.conformance.run import with_studio  # loads engines
+        from mxeon.conformance.run import with_studio  # loads rendering engines
 
         run = with_studio(run, run.policy)
     write_text(below(folder, RESULTS), to_json(run))
@@ -157,7 +162,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     ):
         for _ in written:
             pass
-    # The page links to these files if the address of the documentation is unknown.
+    # The page links to these files if the address of mxeon's documentation is unknown.
     for issue in {each for one in run.results for each in issues_of(one)}:
         write_text(below(folder, f"{PAGES}/{issue.page}.md"), issue.text)
     with (
@@ -182,7 +187,7 @@ def _inputs(run: Run) -> Iterator[AnyPath]:
 
 
 def _write_picture(folder: Path, place: tuple[Picture, str]) -> None:
-    """Write a picture as EXR and as PNG; `place` has its name without suffix."""
+    """Write a picture as EXR and as PNG. `place` is the picture, and a file name without suffix."""
     picture, name = place
     image = np.asarray(picture.image)
     write_exr(below(folder, f"{name}.exr"), image, picture.metadata)
@@ -211,7 +216,7 @@ def html(run: Run) -> Generator[str, None, None]:
 
 
 def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    """The pictures, followed by those of their references that are not among them, once each."""
+    """The pictures, followed by each reference of a picture that is not yet among the pictures."""
     known = {_subject(each) for each in pictures if each.host == REFERENCE}
     added = []
     for picture in pictures:
@@ -225,13 +230,17 @@ def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
 
 
 def _subject(picture: Picture) -> tuple[str, ...]:
-    """Key of a picture's reference. Portraits depend on the points that their host renders."""
+    """Key that a picture has in common with its reference.
+
+    The key includes the rendered points, because hosts render portraits of nodes at different
+    points.
+    """
     points = picture.metadata.get("points", "")
     return picture.document, picture.element, picture.library, picture.scene, points
 
 
 # Threads help because encoders release the interpreter's lock.
-THREADS = 4  # each keeps one or two pictures in memory, and often waits for a disk
+THREADS = 4  # each thread keeps one or two pictures in memory and often waits for a disk
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -239,10 +248,10 @@ R = TypeVar("R")
 
 @contextmanager
 def in_threads(work: Callable[[T], R], items: Iterable[T]) -> Iterator[Iterator[R]]:
-    """Run `work` on every item in threads, a few items ahead; iterate over the results in order.
+    """Run `work` on every item in threads, a few items ahead, and yield the results in order.
 
-    The first error stops the work and is raised. The threads end with the block, not by garbage
-    collection, which may run in one of the threads: that thread would wait for itself.
+    The first error stops the work and is raised. The threads end with the block. If garbage
+    collection ended the threads instead, a thread that runs the collection would wait for itself.
     """
     begun = deque[Future[R]]()
     with ThreadPoolExecutor(THREADS) as pool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparison of two reports."""
+"""Compares two reports."""
 
 import json
 import math
@@ -38,12 +38,12 @@ from mxeon.report import JSON_FORMAT, SCHEMA
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
-SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on the drawn samples
-# Errors of the same samples differ between engines or drivers by up to the factor EQUAL, plus the
-# error FUNCTIONS of their built-in functions.
+SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts of random samples
+# For the same samples, errors on different engines or drivers differ by at most the factor EQUAL,
+# plus FUNCTIONS, which is the error of built-in functions.
 EQUAL, FUNCTIONS = 1.02, 2e-5
-# Other samples change errors by up to CHANCE standard deviations, and the rms distance to the best
-# match by up to the factor DISTANCE.
+# If the samples differ, errors change by at most CHANCE standard deviations, and the rms distance
+# to the nearest model changes by at most the factor DISTANCE.
 CHANCE, DISTANCE = 6.0, 3.0
 
 
@@ -51,8 +51,8 @@ CHANCE, DISTANCE = 6.0, 3.0
 class Growth:
     """A number of a result that changed by more than noise.
 
-    - `key`: A row of `mxeon.conformance.words.GROWTHS`.
-    - `region`: The region of samples to which the number applies; None for all.
+    - `key`: A key of `mxeon.conformance.words.GROWTHS`.
+    - `region`: The region of samples to which the number applies; None for all samples.
     """
 
     key: str
@@ -67,7 +67,7 @@ class Growth:
 
 @dataclass(frozen=True)
 class Change:
-    """A difference between two reports. An entry that one of them lacks has the value "none"."""
+    """A difference between two reports; "none" stands for an entry that a report lacks."""
 
     kind: str  # one of KINDS
     host: str  # host and library are "" for documents and versions
@@ -89,7 +89,7 @@ class Change:
 
     @property
     def size(self) -> float:
-        """Size of the change: the largest logarithm of a growth's factor, up or down."""
+        """The largest absolute logarithm of the factors by which numbers grew or fell."""
         factors = (each.factor for each in self.growths)
         return max((abs(math.log(each)) if each else math.inf for each in factors), default=0.0)
 
@@ -104,7 +104,7 @@ class Change:
 
 @dataclass(frozen=True)
 class ShownPicture:
-    """A picture listed in results.json, with its files; see `mxeon.report.to_json`."""
+    """A picture in results.json, with the paths of files; see `mxeon.report.to_json`."""
 
     document: str
     element: str
@@ -119,7 +119,7 @@ class ShownPicture:
 
 @dataclass(frozen=True)
 class Elsewhere:
-    """A failure of a check for inputs that a document does not use."""
+    """A check that fails for inputs that a document does not use."""
 
     document: str
     check: str
@@ -130,7 +130,7 @@ class Elsewhere:
 
 @dataclass(frozen=True)
 class Report:
-    """The content of results.json, except $schema; see `mxeon.report.to_json`."""
+    """The content of results.json, except for $schema; see `mxeon.report.to_json`."""
 
     format: int
     verdict: Verdict
@@ -162,9 +162,9 @@ class Report:
 
 
 def read_results(folder: str | PathLike[str]) -> Report:
-    """Read a results.json, given its path or the folder of its report.
+    """Read a results.json, given the path of the file or of the folder of a report.
 
-    Raises InputError if it is missing or invalid; the message names the first wrong value.
+    Raises InputError if the file is missing or invalid. The message names the first wrong value.
     """
     path = Path(folder) / "results.json" if Path(folder).is_dir() else Path(folder)
     rule = f"{path}: must be the results.json of a report"
@@ -186,14 +186,14 @@ def read_results(folder: str | PathLike[str]) -> Report:
 
 
 def read_report(content: dict[str, object]) -> Report:
-    """Convert JSON that `mxeon.report.to_json` wrote to a report."""
+    """The Report in a JSON object that `mxeon.report.to_json` has written."""
     if (identifier := content.pop("$schema")) != SCHEMA:
         raise InputError(f"$schema must be {SCHEMA}; got {identifier!r}")
     return read_strictly(make_converter(), content, Report)
 
 
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
-    """Changes between two reports, sorted by kind, host, library and subject, largest first."""
+    """Changes between two reports, sorted by kind, host and library, with large changes first."""
     folders = _matching_folders(list(before.libraries), list(after.libraries))
     renamed = (
         replace(each, library=folders.get(each.library, each.library)) for each in before.results
@@ -247,13 +247,13 @@ def lines(changes: Sequence[Change]) -> Iterator[str]:
 
 
 def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
-    """Changes as JSON values: the fields of Change, and its place."""
+    """Changes as JSON objects, which have the fields of Change and the text `place`."""
     convert = make_converter().unstructure
     return [convert(each) | {"place": each.place} for each in changes]
 
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
-    """Regressions and lost checks as GitHub annotations, one per subject: GitHub shows few."""
+    """A GitHub annotation for each subject with regressions or lost checks; GitHub shows few."""
     for (kind, *_, subject), rows in grouped(changes, _group).items():
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
             title = ", ".join(filter(None, (kind, rows[0].location, subject)))
@@ -280,7 +280,7 @@ def _matching_folders(before: Sequence[str], after: Sequence[str]) -> dict[str, 
 
 
 def _by_place(results: Iterable[Result]) -> dict[tuple[str, ...], Result]:
-    """Key results by host, library, check and subject; number duplicates."""
+    """Results keyed by host, library, check and subject. Keys of duplicates have a number."""
     keyed: dict[tuple[str, ...], Result] = {}
     uses: Counter[tuple[str, ...]] = Counter()
     for result in results:
@@ -296,7 +296,11 @@ Results: TypeAlias = Mapping[tuple[str, ...], Result]
 def _result_changes(
     before: Results, after: Results, fewer: bool, renewed: Container[str]
 ) -> Iterator[Change]:
-    """Changes of results. With `fewer` documents, no check is LOST. Hosts in `renewed` changed."""
+    """Changes of results.
+
+    If there are `fewer` documents than before, no missing check counts as LOST. The hosts in
+    `renewed` have changed their version or device.
+    """
     for key in (key for key in before if key in after):
         old, new = before[key], after[key]
         kind, reason, growths = _change(old, new)
@@ -327,7 +331,7 @@ def _result_changes(
 
 
 def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
-    """Kind of change of a result ("" for none), a reason besides numbers, and numbers that grew."""
+    """Kind of a result's change ("" for none), a reason in words, and numbers that grew."""
     if NOT_RUN in (old.verdict, new.verdict):
         if old.verdict == new.verdict:
             return "", "", ()
@@ -356,9 +360,10 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
 
 
 def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
-    """Numbers that grew by more than noise: those of all samples first; without samples, the error.
+    """Numbers that grew by more than noise. Numbers of all samples come first.
 
-    Growth below the tolerance is ignored, since a check passes with such errors.
+    For results without samples, the number is the error. Growth below the tolerance is ignored,
+    because a check passes with such errors.
     """
     margin = (new.tolerance or 0.0) + FUNCTIONS
     if not (old.errors and new.errors):
@@ -373,7 +378,7 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
     for now in new.errors[: 1 if permitted else None]:
         if not (was := regions.get(now.region)):
             continue
-        # A mean square has the largest variance if each error is either 0 or the largest error.
+        # The variance of a mean square is largest if each error is either 0 or the largest error.
         noise = CHANCE * math.hypot(*(x.largest * x.rms / math.sqrt(x.of) for x in (was, now)))
         usual = EQUAL * was.rms if same else math.sqrt(was.rms**2 + noise)
         keys = ("not_finite", *["wrong"] * (now.rms > was.rms + margin and not permitted))
@@ -393,9 +398,10 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
 
 
 def _is_rounding(old: Result, new: Result) -> bool:
-    """Whether another driver explains a failure: few samples exceed the tolerance, but not the rms.
+    """Whether a new driver explains a failure: some errors exceed the tolerance, but not their rms.
 
-    With MaterialX's sheen, 5 of 6957 samples exceed 2e-5 on llvmpipe, by 1.2e-4; none on lavapipe.
+    With MaterialX's sheen, the errors of 5 of 6957 samples exceed 2e-5 on llvmpipe, by up to
+    1.2e-4. On lavapipe, no error exceeds 2e-5.
     """
     [whole] = new.errors[:1] or [None]
     few = whole and not whole.not_finite and whole.rms <= (new.tolerance or 0.0)
@@ -411,9 +417,9 @@ def _is_farther(old: Result, new: Result) -> bool:
 
 
 def _is_repaired(old: Result, new: Result) -> bool:
-    """Whether a known defect is gone: the right model is now nearest, as near as the defect was.
+    """Whether a known defect is gone, so that the right model is as near as the defect was.
 
-    With other samples, an error that exceeds the size on the defect's page may be noise.
+    If the samples differ, an error that exceeds the size on the defect's page may be noise.
     """
     right = next(iter(new.diagnosis.distances.values()), math.inf)
     nearest = old.samples != new.samples or right == new.diagnosis.distance < math.inf

@@ -24,7 +24,8 @@ LOOKS = {
     NOT_RUN: ("not-run", "–"),
 }
 
-# Matches spaces between numbers and units. It also matches whole code elements, to skip them.
+# Matches spaces between numbers and units. The pattern also matches whole code elements, so that
+# spaces in code are skipped.
 SPACES = re.compile(
     r"<(pre|code|script|style)\b.*?</\1>"
     r"|(?<=\d) (?=(?:%|px|[nµm]m|[µm]?s|[kKMG]i?B|degrees|times|codes|paths)(?!\w))",
@@ -33,7 +34,7 @@ SPACES = re.compile(
 
 
 def unbroken(html: str) -> str:
-    """Keep numbers and their units on one line, in HTML.
+    """Keep each number in HTML on one line with its unit.
 
     >>> unbroken("12 % in 3 s of <code>12 % 3 s</code>")
     '12\\xa0% in 3\\xa0s of <code>12 % 3 s</code>'
@@ -42,7 +43,7 @@ def unbroken(html: str) -> str:
 
 
 def share(result: Result) -> float:
-    """Error over tolerance; infinite if the error is missing or not finite."""
+    """The error divided by the tolerance; infinite if the error is missing or not finite."""
     error, tolerance = result.error, result.tolerance
     if error is None or not math.isfinite(error):
         return math.inf
@@ -57,7 +58,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
-    """Titles and distances of the nearest models, and distances over the largest one listed."""
+    """Titles and distances of the nearest models, and distances divided by the largest of these."""
     rows = sorted(distances.items(), key=lambda pair: pair[1])[:count]
     largest = max((distance for _, distance in rows), default=0.0) or 1.0
     return [(title, distance, distance / largest) for title, distance in rows]
@@ -73,7 +74,7 @@ def linked(result: Result) -> Markup:
 
 
 def causes_of(result: Result) -> list[Markup]:
-    """Links to the known issues that explain a failure; without any, its diagnosis."""
+    """Links to the known issues that explain a failure; the diagnosis if no issue is known."""
     diagnosis = words.diagnosis(result.diagnosis) or words.excess(result)
     return _links(result) or [Markup.escape(diagnosis)]
 
@@ -84,13 +85,13 @@ def _links(result: Result) -> list[Markup]:
 
 
 def page_address(issue: Issue) -> str:
-    """Address of an issue's page, on the site or next to the report."""
+    """Address of an issue's page, which is on the documentation's site or next to the report."""
     site = _site()
     return f"{site}/upstream/{issue.page}.html" if site else f"upstream/{issue.page}.md"
 
 
 def link(issue: Issue) -> str:
-    """Address of an issue's page on the site, or path of its file if no site is known."""
+    """Address of an issue's page on the site, or path of the page's file if no site is known."""
     if _site():
         return page_address(issue)
     file = folder().resolve() / f"{issue.page}.md"
@@ -102,7 +103,7 @@ def _site() -> str:
     """Address of the documentation by the package's metadata (`project.urls`); "" if unknown."""
     try:
         urls = metadata("mxeon").get_all("Project-URL") or []
-    except PackageNotFoundError:  # mxeon is imported from a folder
+    except PackageNotFoundError:  # mxeon is not installed as a package
         return ""
     addresses = dict(each.split(", ", 1) for each in urls)
     return str(addresses.get("Documentation", "")).rstrip("/")

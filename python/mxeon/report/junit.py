@@ -66,7 +66,8 @@ def to_junit(run: Run) -> str:
             first.text = _xml("\n".join(lines))
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
-    # ElementTree would name the encoding of the system's locale.
+    # The XML declaration is written here, because ElementTree would declare the encoding of the
+    # system's locale.
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
 
 

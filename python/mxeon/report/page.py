@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report page, one self-contained HTML file. Needs the `report` extra."""
+"""The page of a report, which is a single, self-contained HTML file. Needs the extra `report`."""
 
 from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
@@ -35,12 +35,13 @@ from mxeon.report import in_threads, pieces
 from mxeon.report.formats import causes_of, linked, nearest, vector
 from mxeon.shaders.scene import STUDIO
 
-# Maximum materials with embedded pictures, about a megabyte each; other materials are links.
+# Maximum number of materials with embedded pictures, which take about a megabyte for each material.
+# The page only links to other materials.
 SHOWN_MATERIALS = 60
 LARGE = 512  # pixels on a side of a studio picture
 LEAST_SCALE = 1e-3  # smallest scale of a difference map: 0.1 % of white
-OPEN_MATERIALS = 8  # maximum materials shown open; others open on a click
-OPEN_ROWS = 20  # maximum failed rows of checks that are shown open
+OPEN_MATERIALS = 8  # maximum number of materials that are shown unfolded
+OPEN_ROWS = 20  # maximum number of failed checks that are shown unfolded
 WORST_FIRST: tuple[Verdict, ...] = (FAILED, NOT_RUN, DIFFERS, PASSED)
 
 Place: TypeAlias = tuple[str, str]  # host and library
@@ -52,7 +53,7 @@ class CheckResults:
     """The results of one check on one host with one library; never empty."""
 
     key: str
-    anchor: str  # identifier in the page
+    anchor: str  # identifier of an element on the page
     results: tuple[Result, ...]
 
     @property
@@ -84,7 +85,7 @@ def tally(results: Iterable[Result]) -> str:
 def checks_by_place(
     results: Iterable[Result], prefix: str = "check"
 ) -> dict[Place, list[CheckResults]]:
-    """Group checks by host and library, in order of appearance; `prefix` begins all anchors."""
+    """Group checks by host and library, in order of appearance. `prefix` begins each anchor."""
     places = grouped(results, lambda each: (each.host, each.library))
     return {
         place: [
@@ -98,7 +99,7 @@ def checks_by_place(
 def matrix(
     places: Mapping[Place, Sequence[CheckResults]],
 ) -> list[tuple[str, list[CheckResults | None]]]:
-    """Rows of the table of checks: a key, and CheckResults or None for each host and library."""
+    """Rows of the table of checks: a key, and for each host and library CheckResults or None."""
     columns = [{check.key: check for check in checks} for checks in places.values()]
     keys = dict.fromkeys(key for column in columns for key in column)
     return [(key, [column.get(key) for column in columns]) for key in keys]
@@ -123,7 +124,10 @@ def nodes_of(results: Iterable[Result]) -> str:
 
 
 def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
-    """Pictures by material, worst first, documents before portraits; and verdicts."""
+    """The pictures of each material, and verdicts.
+
+    Materials of documents come before portraits of nodes, and wrong materials come before others.
+    """
     verdicts: dict[tuple[str, str, str], Result] = {}
     for each in run.results:
         if each.check in ("picture", "finite", *DIRECT):
@@ -152,8 +156,8 @@ def is_portrait(pictures: Sequence[Picture]) -> bool:
 
 
 def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
-    """The page's data of a material: a sentence per host and library, and rows of pictures."""
-    # Stock MaterialX comes first: users have it without eonlib.
+    """Data of a material for the page: a sentence per host and library, and rows of pictures."""
+    # Stock MaterialX comes first, because users have stock MaterialX even without eonlib.
     pictures = sorted(pictures, key=lambda each: each.library != "stock")
     by_row = grouped(pictures, lambda each: (each.host, each.scene))
     found = {
@@ -184,7 +188,7 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
 
 
 def _pair(pictures: Sequence[Picture]) -> dict[str, Any]:
-    """Large studio pictures, and the difference of the first two, relative to the second."""
+    """The first two pictures of the studio in a large size, and their relative difference."""
     figures = [
         _figure("image", title_of(one.library), "", srgb_encoded(pbr_neutral(one.image)), LARGE)
         for one in pictures[:2]
@@ -199,15 +203,15 @@ def _pair(pictures: Sequence[Picture]) -> dict[str, Any]:
 
 
 def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
-    """Pictures of a scene on a host: one per library, the reference, and the differences.
+    """Figures of a scene on a host: a picture for each library, the reference, and differences.
 
-    All differences share a scale up to at least the tolerance, so correct pixels are dark.
+    All difference maps have a common scale of at least the tolerance, so correct pixels are dark.
     """
     figures: list[dict[str, Any]] = []
     differences: list[tuple[Picture, NDArray[np.float64]]] = []
     reference = None
     for one in pictures:
-        # Read pixels only once: those of a stored run are in files.
+        # Read pixels only once, because the pixels of a stored run are in files.
         figures.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
         if one.reference is not None:
             reference = one.reference if reference is None else reference
@@ -242,17 +246,17 @@ def _figure(
 
 
 def _is_audit(result: Result) -> bool:
-    """Whether a check judges the library's functions and source text, not its nodes."""
+    """Whether a check judges the library's functions and source text instead of nodes."""
     return result.host == SOURCE or result.subject == SHADER_FUNCTIONS
 
 
 def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, None]:
     """Generate a run's page in pieces; `file_of` returns the file of a picture.
 
-    Pictures are read one by one. The page loads nothing and runs only its own script, which it does
-    not need. Text from documents, shaders and hosts is escaped.
+    Pictures are read one by one. The page loads no files, runs only its own script, and also works
+    without the script. Text from documents, shaders and hosts is escaped.
     """
-    # Failures for unused inputs come last.
+    # Failures for inputs that no document uses come last.
     results = sorted(run.results, key=run.is_elsewhere)
     audits = [each for each in results if _is_audit(each)]
     checked = [each for each in results if not _is_audit(each)]

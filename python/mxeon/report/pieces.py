@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""HTML pages from templates, and images embedded in them. Needs the `report` extra."""
+"""Fills templates of HTML pages, and embeds images in pages. Needs the extra `report`."""
 
 import base64
 import io
@@ -22,13 +22,13 @@ SHOWN_SIZE = 256  # maximum pixels on a side of embedded pictures; larger pictur
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
 NOT_JUDGED = (96, 99, 104)
-FAST = 1  # zlib's level, which takes a third of the time for a third more bytes
+FAST = 1  # level of zlib; takes a third of the default time, for a third more bytes
 
 
 def generate_page(
     package: str, name: str, filters: Mapping[str, Callable[..., Any]], **values: Any
 ) -> Generator[str, None, None]:
-    """Generate a page in pieces from a package's template and script; no other script runs."""
+    """Generate a page in pieces from a package's template and script. No other script can run."""
     environment = Environment(
         loader=ChoiceLoader([PackageLoader(package), PackageLoader("mxeon.report")]),
         autoescape=True,
@@ -45,7 +45,7 @@ def generate_page(
 
 
 def picture_uri(pixels: NDArray[np.uint8], largest: int = SHOWN_SIZE) -> str:
-    """Encode a picture, (size, size, 3), as a data URI; `largest` limits the pixels on a side."""
+    """Encode a picture, (size, size, 3), as a data URI of at most `largest` pixels on a side."""
     step = -(-len(pixels) // largest)
     buffer = io.BytesIO()
     shown = np.ascontiguousarray(pixels[::step, ::step])
@@ -54,9 +54,10 @@ def picture_uri(pixels: NDArray[np.uint8], largest: int = SHOWN_SIZE) -> str:
 
 
 def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDArray[np.uint8]:
-    """Color a difference, (size, size), by DIFFERENCE_COLORS, which span 0 to `scale`.
+    """Color a difference map, (size, size), by DIFFERENCE_COLORS, which span 0 to `scale`.
 
-    Infinite differences are magenta. NaN marks pixels that were not judged; they are gray.
+    Infinite differences are magenta. Pixels that were not judged are NaN in the map, and become
+    gray.
     """
     finite = np.isfinite(difference_map)
     steps = np.where(finite, difference_map, 0.0) * (len(DIFFERENCE_CODES) / scale)
@@ -67,6 +68,6 @@ def difference_pixels(difference_map: NDArray[np.float64], scale: float) -> NDAr
 
 
 def difference_gradient() -> str:
-    """DIFFERENCE_COLORS from left to right, as a CSS gradient."""
+    """A CSS gradient that shows DIFFERENCE_COLORS from left to right."""
     colors = (matplotlib.colors.to_hex(DIFFERENCE_COLORS(at)) for at in np.linspace(0, 1, 9))
     return f"linear-gradient(to right, {', '.join(colors)})"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON Schema of results.json, generated from the dataclasses that read it."""
+"""The JSON Schema of results.json, generated from the dataclasses that hold the file's content."""
 
 from dataclasses import fields, is_dataclass
 from enum import Enum
@@ -31,8 +31,9 @@ SIMPLE: dict[Any, Schema] = {
 def schema() -> Schema:
     """The JSON Schema (draft 2020-12) of results.json.
 
-    It states keys and types. `read_results` also requires that counts match results, that errors
-    have tolerances, that neither is negative, and that an array's rows have equal lengths.
+    The schema states keys and types. `read_results` also requires that counts match results, that
+    each error has a tolerance, that errors and tolerances are not negative, and that an array's
+    rows have equal lengths.
     """
     records: dict[str, Schema] = {"Number": NUMBER, "Rows": ROWS}
     root = _record(Report, records)
@@ -43,7 +44,7 @@ def schema() -> Schema:
 
 
 def _record(kind: type, records: dict[str, Schema]) -> Schema:
-    """The schema of a dataclass. Schemas of dataclasses in its fields are added to `records`."""
+    """The schema of a dataclass. Schemas of dataclasses in the fields are added to `records`."""
     types = get_type_hints(kind)
     names = [each.name for each in fields(kind)]
     return {
