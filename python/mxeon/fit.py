@@ -157,10 +157,10 @@ UNDETERMINED = "not determined by the data"  # printed if an error spans the par
 
 @dataclass(frozen=True)
 class Fit:
-    """Best-fit parameters of a model for a measured BRDF, with their standard deviations.
+    """Best-fit parameters of a model for a measured BRDF, with standard deviations.
 
-    - `values`, `errors`: The color (C,) and the other parameters by input name, and their standard
-      deviations. The functions of `mxeon.model(fit.model)` accept `**fit.values`.
+    - `values`, `errors`: The fitted color (C,) and other parameters, and the standard deviations of
+      these values, by input name. The functions of `mxeon.model(fit.model)` accept `**fit.values`.
     - `covariance`: (P, P), in the order of `values`, with one row per channel of the color. Rows
       and columns of parameters that the data do not determine are infinite.
     - `scatter`: Square root of the sum of squared residuals divided by the number of degrees of

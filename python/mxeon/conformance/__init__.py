@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Conformance: hosts and libraries judged by the table of checks, documents by their pictures.
+"""Conformance tests for rendering engines and for libraries of MaterialX nodes.
 
-The only package that sees both chains, the shaders and the models. The public functions are
-`check` (`mxeon.conformance.run`), `check_brdf` (`mxeon.survey.callables`).
+The package compares results of shaders with results of models, and pictures of documents with
+reference pictures. The public functions are `check` in `mxeon.conformance.run` and `check_brdf` in
+`mxeon.survey.callables`.
 
-A *spec* defines how a node in one mode is judged: its inputs with their ranges, models, errors and
-samples (`specs`). A *backend* is a way of evaluating a spec on an engine (`backends`), a *case* is
-a spec on an engine with a library (`case.Case`), and a *check* is a claim about a case, with a
-measurement and a control that must fail (`checks`). A tolerance is the spec's error plus the
-backend's precision. docs/design.md describes the rest.
+A *spec* defines how a node in one mode is judged, with ranges of inputs, models, errors and samples
+(`specs`). A *backend* evaluates a spec on an engine (`backends`). A *case* is a spec on an engine
+with a library (`case.Case`). A *check* is a claim about a case, with a measurement and with a
+control that must fail (`checks`). A tolerance is the sum of the spec's error and the backend's
+precision. docs/design.md describes the rest of the package.
 """

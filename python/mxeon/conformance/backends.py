@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 POWERS = 1 << 12  # number of colors for which pow() is measured
 Pairs: TypeAlias = tuple[Array, Array, Mask]  # wo, wi, and a mask of the pairs to judge
-Errors: TypeAlias = Mapping[str, Tolerance | None]  # tolerances by quantity, None if not measured
+Errors: TypeAlias = Mapping[str, Tolerance | None]  # tolerances by quantity; None if not measured
 T = TypeVar("T")
 
 
@@ -67,8 +67,7 @@ class Backend(ABC):
     """A base class for evaluating one node on an engine."""
 
     abilities: ClassVar[Ability]  # supported kinds of nodes and checks
-    # State axes of the check `states`, such as "lights", on which a backend only supports the first
-    # state.
+    # Kinds of states in the check `states`, such as "lights", of which only the first is supported.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # replaces the counts of specs with more pairs
@@ -340,7 +339,8 @@ class Media(Evaluating):
 
 # OSL returns closures as trees of arguments and weights. The models evaluate the trees in float64.
 
-# More pairs would only test the models, which compute the values of closures.
+# Few pairs suffice, because the models compute the values of closures. More pairs would only test
+# the models.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
 SOME = 1 << 8  # maximum number of pairs of each kind, except random pairs
 # The models round to float64, by at most 2^-53. The sharpest lobe, with alpha 1e-4, amplifies this
@@ -439,7 +439,7 @@ class Closures(Evaluating):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Normals and tangents of a surface shader's lobes, which use the surface's frame."""
+        """Unsupported normals and tangents of a surface shader's lobes, which share a frame."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
@@ -477,7 +477,7 @@ SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughnes
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
 FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in OpenImageIO's source
-POINT = 3.0 * EYE / NEAREST  # roundings of a point, 40 from the eye and 1/2 from the light
+POINT = 3.0 * EYE / NEAREST  # roundings of a point 40 units from the eye and 1/2 from the light
 FLAT_SLOPE = 8.0  # largest slope of the diffuse models, per radian
 # Largest slope of microfacets, per radian. The distribution has a slope of 2 divided by the
 # smallest alpha. Fresnel and shadowing add 3.
@@ -487,7 +487,7 @@ FLAT, SHARP = (
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
 # Error of the light's direction in radians. A point is up to JITTER pixels beside the middle of its
-# pixel, and a grazing triangle divides this distance by the cosine RIM.
+# pixel. On a triangle at a grazing angle, this distance is divided by the cosine RIM.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
 DISPLACED = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
@@ -841,7 +841,10 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Tolerances of pictures, without pbrlib's albedos, as Storm sums other directions."""
+        """Tolerances of pictures.
+
+        Albedos of pbrlib nodes are not judged, because Storm samples other directions.
+        """
         errors = super().errors(spec)
         return {**errors, "albedo": None} if Ability.LOBE in spec.requires else errors
 

@@ -24,7 +24,8 @@ from mxeon.hosts.base import Engine, Host
 
 F = TypeVar("F", bound=Spec)
 Change = Callable[[Batch, Array], Array]  # changes the values of a batch
-# Engines may compile two documents differently, so equal values may differ by roundings.
+# Engines may compile two documents differently, so values that should be equal may differ by
+# rounding errors.
 ROUNDED = 64 * ROUNDING
 
 
@@ -131,7 +132,7 @@ class Case:
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """All inputs before and after a change of each input that the engine can set."""
+        """For each input that the engine can set, the inputs before and after a change."""
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
@@ -139,7 +140,7 @@ class Case:
         return candidates(self.spec, quantity)
 
     def tolerance(self, *quantities: str) -> Tolerance:
-        """The tolerance of the first known quantity, plus errors of the engine's functions."""
+        """The tolerance of the first quantity that has a tolerance, plus the engine's errors."""
         errors = self.backend.errors(self.spec)
         for quantity in quantities:
             if error := errors.get(quantity):
@@ -182,7 +183,10 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 
 
 def frames(case: Case) -> Iterator[Compared]:
-    """Values in rotated and unrotated frames, which must agree. Half of the normals face away."""
+    """Values in rotated and unrotated frames, which must agree.
+
+    Half of the normals face away from the viewer.
+    """
     turned = case.backend.turned
     # A sum over the environment is slow. Every fifth pair still covers both sides of the surface.
     subset = turned.where(slice(None, None, 5))

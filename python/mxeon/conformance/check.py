@@ -155,7 +155,7 @@ class Check:
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
-            # A permitted function excuses errors only in open checks.
+            # A permitted function only excuses errors in checks with `open`.
             permitted = self.open and diagnosis.permitted
             if permitted and not isinstance(self.measure, Comparison) and diagnosis.distances:
                 permitted = self.is_reproduced(case, diagnosis.first.key, tolerance)
@@ -187,7 +187,7 @@ def judge(
             diagnosis = diagnose() if measured.error > tolerance.value else Diagnosis()
     except (NotRun, ShaderError) as error:
         return not_measured(place, error)
-    notes: dict[str, None] = {}  # ordered, without duplicates
+    notes: dict[str, None] = {}  # a dictionary as an ordered set
     for record in records:
         if isinstance(record.message, RendererWarning):
             notes[str(record.message)] = None

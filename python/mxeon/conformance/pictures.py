@@ -223,7 +223,7 @@ def _scenes(host: Host) -> tuple[Scene, ...]:
 def _judge_material(
     file: Path, shader: Shader, host: Host, judge: Reference, values: HostValues, front_lit: bool
 ) -> tuple[Result, tuple[Picture, ...]]:
-    """Judge one material. If `front_lit`, only points with s >= 0 are judged."""
+    """Judge one material. If `front_lit`, only judge points with light on the viewer's side."""
     scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
     place = Result("picture", MATCH, subject, host.name, library, results.NOT_RUN)
@@ -253,7 +253,7 @@ def _judge_material(
         where = mask[..., None].astype(np.float32) if partly else None
         return Picture(*names, image, reference, metadata, where)
 
-    # Compare pictures with the reference. If the models do not cover a material, its pixels only
+    # Compare pictures with the reference. If the models do not cover a material, the pixels only
     # have to be finite.
     try:
         if reason := host.unread(shader):
@@ -306,7 +306,7 @@ def _input_at_fault(
     """The input without which a renderer's own material is nearest to the reference."""
     small = [replace(scene, size=64) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
-    # Largest difference for each removed input. The name "" removes no input.
+    # Largest difference from the reference without each input. The name "" removes no input.
     errors: dict[str, float] = {}
     for name in ("", *names):
         document = mx.createDocument()
@@ -466,8 +466,8 @@ PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 def comparison_pictures(case: Case) -> tuple[Picture, ...]:
     """Pictures of a rough diffuse node in light from the side and from behind, with references.
 
-    There are no pictures of other nodes, of a surface shader's lobe, and on renderers in which each
-    pixel shows one pair of directions. Pixels near the rim and the terminator are black in all
+    There are no pictures of other nodes or of a surface shader's lobe, or on renderers in which
+    each pixel shows one pair of directions. Pixels near the rim and the terminator are black in all
     pictures.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)

@@ -68,7 +68,7 @@ Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and a port 
 
 
 class Subject(NamedTuple):
-    """An output of a node in a library, or a port in the node's graph with the node's inputs."""
+    """An output of a node in a library, or a port inside the node's graph."""
 
     definition: mx.NodeDef
     library: str
@@ -101,9 +101,9 @@ def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
 def definition_facts(
     definition: mx.NodeDef, reference: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """The attributes of a node definition that are compared, by description.
+    """The compared attributes of a node definition, by description.
 
-    The ports are those of the definition `reference`.
+    Only ports of the definition `reference` are included.
     """
     name = reference.getName()
     facts = {
@@ -265,7 +265,7 @@ class Comparison:
         return own, released, *(each.getImplementation(self._target) for each in (own, released))
 
     def _change(self, name: str) -> Hashable:
-        """A key for a node's change since the release, or None without a change or with a model."""
+        """A key for a node's change since the release, or None for a node to ignore."""
         own, released, code, released_code = self._pair(name)
         if released_code is None:
             return None
@@ -314,7 +314,7 @@ class Comparison:
                 return np.inf
             for places in differing_ports(terms, (graph, output), (released, released_output)):
                 kind, expected = (port.getType() for _, port in places)
-                # Only a picture has the surface's own vectors.
+                # The normal and the tangent of the surface are only defined in a picture.
                 vectors = any(port.getAttribute("defaultgeomprop") for _, port in places)
                 if expected in CLOSURES or vectors:
                     whole = node._replace(place=(released, released.getOutputs()[0]))
@@ -402,7 +402,7 @@ class Comparison:
     def _compiled(
         self, document: mx.Document, node: mx.Node, library: str, client: tuple[str, ...] = ()
     ) -> generation.Shader:
-        """The shader of a material with a node."""
+        """The shader of a material that consists of one node."""
         if (kind := node.getType()) != "surfaceshader":
             node = connected("surface", "shading", "surfaceshader", node, kind.lower(), kind)
         connected("surfacematerial", "look", "material", node, "surfaceshader", "surfaceshader")
@@ -474,7 +474,7 @@ def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
         graph.copyContentFrom(place[0])
         for output in graph.getOutputs():
             graph.removeOutput(output.getName())
-        for each in graph.getNodes():  # numbers cannot depend on lobes
+        for each in graph.getNodes():  # numeric outputs cannot depend on lobes
             if each.getType() in CLOSURES and kind not in CLOSURES:
                 graph.removeNode(each.getName())
         graph.setNodeDefString(name)

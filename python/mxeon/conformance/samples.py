@@ -116,7 +116,7 @@ class Batch:
 
     @property
     def rough(self) -> Array:
-        """The roughness of each pair, (N,), or 0 if the node has none.
+        """The roughness of each pair, (N,), or 0 for nodes without roughness.
 
         The larger of two alphas is the roughness.
         """

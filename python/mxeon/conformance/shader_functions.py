@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compare a library's shader functions with the NumPy versions of the functions, on a host.
 
-The host compiles a program with all functions, and with a function that calls any of the others by
-a number. The parameter names in eonlib's GLSL select random arguments for the shader and for NumPy.
+The host compiles a program that contains all functions and a dispatcher, which calls a function by
+its number. The parameter names in eonlib's GLSL select random arguments for the shader and for
+NumPy.
 """
 
 import re
@@ -110,7 +111,8 @@ def arguments(function: str) -> list[str]:
 POINTS = 4096  # points per function
 CORNERS = 64  # number of points with arguments at the ends of their ranges
 
-# Directions along the normal, with a cosine rounded up above 1, on the horizon, and between.
+# Directions along the normal (with a cosine of 1 or rounded up above 1), on the horizon, and
+# between.
 AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0), (0.6, 0.8)))
 
 Columns = Mapping[str, Array]
@@ -158,7 +160,8 @@ def random_columns() -> Columns:
     azimuth, elevation = 2.0 * np.pi * rng.random(POINTS), 0.5 * np.pi * _unit(rng)
     mu, roughness = np.clip(wo[:, 2], GRAZING, 1.0), unit["roughness"]
     rho, value = np.stack([_unit(rng) for _ in range(3)], axis=-1), 2.0 * _unit(rng) - 1.0
-    divisors = _unit(rng)  # 1/4 is log-uniform down to 1e-36; shaders treat 1e-37 as 0
+    # A quarter of the divisors is log-uniform down to 1e-36, because shaders treat 1e-37 as 0.
+    divisors = _unit(rng)
     divisors[CORNERS : POINTS // 4] = 10.0 ** (-36.0 * divisors[CORNERS : POINTS // 4])
     u1, u2 = unit["u1"], unit["u2"]
     # fmt: off

@@ -39,7 +39,8 @@ class Input:
     # Value that must change the result, or None for inputs without a visible effect.
     change: ArrayLike | None = None
     needs: Values = field(default_factory=dict, hash=False)  # inputs that make the change visible
-    # Whether random values are log-uniform. Otherwise, a tenth is at each end of the range.
+    # Whether random values are log-uniform. If not, a tenth of the values is at each end of the
+    # range.
     logarithmic: bool = False
     often: float | None = None  # value of every other sample, for inputs that are rarely set
     equal: bool = False  # whether both components of every other sample are equal
@@ -118,7 +119,7 @@ class Ability(Flag):
     # Abilities that checks require.
     CLIENT = auto()  # run the shader's complete main() function with a client's bindings
     PAIRS = auto()  # evaluate pairs at the edges of the domain
-    LIGHT = auto()  # evaluate kinds of lighting
+    LIGHT = auto()  # compute the lighting of a shader
 
 
 NO_ABILITY = Ability(0)
@@ -146,7 +147,7 @@ class Spec(ABC):
     """A node in one mode, with the data that checks need."""
 
     requires: ClassVar[Ability]
-    coarse: ClassVar[int] = 1  # factor by which pictures are smaller
+    coarse: ClassVar[int] = 1  # divisor of the width of pictures
     rim: ClassVar[float] = samples.RIM  # smallest cosine judged in pictures
 
     title: str  # unique title for reports
@@ -164,7 +165,7 @@ class Spec(ABC):
     # The kind of light, the output, and the factor that scales the host's values.
     evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
     flat: bool = False  # whether values have no sharp peak
-    # Slope of the values over the angle to the normal, which cosines near 1 do not resolve.
+    # Slope of the values along the angle to the normal. Cosines near 1 do not resolve this angle.
     along: float = 0.0
     optional: bool = False  # whether a target may lack the node, so that checks are not run
     # Errors of an engine's built-in functions, by quantity. The errors are measured on the engine.
@@ -228,14 +229,14 @@ class ValueSpec(Spec):
 
     @abstractmethod
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """All samples. Each kind of samples has a batch."""
+        """All samples, with one batch for each kind of samples."""
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
         """A subset of the samples, for controls and expensive checks."""
         return tuple(batch.first(counts.few) for batch in batches)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """The comparison in a unit in which errors are uniform."""
+        """The comparison, rescaled to a unit in which errors are uniform."""
         return compared
 
 
@@ -346,13 +347,13 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def drawn(self) -> tuple[Input, ...]:
-        """The inputs that the functions of the row use."""
+        """The inputs of the functions in the row of the models' table."""
         inputs = {each.name: each for each in self.inputs}
         return tuple(inputs[name] for name in self.row.inputs)
 
     @abstractmethod
     def values(self, function: F, batch: Batch) -> Array:
-        """Values of a function in the row, (N, 3)."""
+        """Values of a function in the row of the models' table, (N, 3)."""
 
     def value(self, batch: Batch) -> Array:
         return self.values(self.row.value, batch)
@@ -362,7 +363,7 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the values and that the row lacks."""
+        """Functions that may explain the values and are not in the row of the models' table."""
         return ()
 
     @property
@@ -390,7 +391,7 @@ ARGUMENTS = 1 << 14  # number of arguments for measuring an engine's function
 
 @dataclass(frozen=True)
 class EngineFunction:
-    """A built-in shader function. Each engine's error is measured."""
+    """A built-in shader function, whose error is measured on each engine."""
 
     name: str  # last part of the name of a GLSL function that returns the expression
     expression: str  # GLSL expression in x, or in x and y
@@ -407,7 +408,7 @@ class EngineFunction:
     def error(
         self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
     ) -> Callable[[base.Host], float]:
-        """A function that measures a host's largest error, minus `allowed` roundings of 1."""
+        """A function that returns a host's largest error minus `allowed` float32 roundings of 1."""
         least = allowed * ROUNDING
         return lambda host: max(float(self.errors(host, *arguments()).max()) - least, 0.0)
 

@@ -178,7 +178,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 
 def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs whose unique values are no argument of any call, so that the input is never passed."""
+    """Inputs that are never passed: no argument of a call has the unique value of the input."""
     expression = _lobe_expression(subject, target, library)
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
@@ -210,7 +210,7 @@ UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface; the node has another 
 Closure: TypeAlias = dict[str, ArrayLike]
 
 
-# Functions of MDL. The parameters are those of MDL's documentation.
+# Functions of MDL, with the parameters that MDL's documentation states.
 def diffuse_reflection_bsdf(
     tint: ArrayLike = 1.0, roughness: ArrayLike = 0.0, multiscatter_tint: ArrayLike = 0.0
 ) -> Closure:
@@ -269,7 +269,7 @@ def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
                 key = f"tint_is_not_{subject.model}" if name == TINT else "is_not_the_node_s"
                 values = [error]
                 if np.ptp(measured, axis=0).max() <= ROUNDED:
-                    values.append(float(measured.flat[0]))  # a constant instead of the input
+                    values.append(float(measured.flat[0]))  # a constant replaces the input
                 yield Cause(Kind.DEFECT, key, (name,), tuple(values))
 
     causes = list(faults(rows))

@@ -74,7 +74,7 @@ def relative(measured: Array, expected: Array) -> Array:
 
 
 def mean_error(measured: Array, expected: Array) -> Array:
-    """Largest difference between mean values over all rows, repeated for every row.
+    """Largest difference between measured and expected means over all rows, repeated for every row.
 
     The mean removes the noise of random paths.
     """
@@ -82,7 +82,7 @@ def mean_error(measured: Array, expected: Array) -> Array:
 
 
 def mean_scaled(measured: Array, expected: Array) -> Array:
-    """`mean_error` of rows divided by the larger of 1 and the row's largest expected value."""
+    """The `mean_error` after each row is divided by 1 or, if larger, its largest expected value."""
     scale = _scale(expected)
     return mean_error(measured / scale, expected / scale)
 

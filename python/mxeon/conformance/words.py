@@ -375,7 +375,7 @@ def _cure(cause: Cause) -> str:
 
 
 def _filled(text: str, cause: Cause) -> str:
-    """The text, in which a cause's names and numbers replace the braces."""
+    """The text, with a cause's names and numbers in place of the braces."""
     names, values = cause.names, cause.values
     first = values[0] if values else math.nan
     known = (name for name, x in FACTORS.items() if abs(first / x - 1.0) <= SAME_FACTOR)

@@ -31,7 +31,7 @@ _pending: list[int] | None = None  # signals that arrived while they were blocke
 
 
 class SignalExit(KeyboardInterrupt):
-    """A signal that ends the command with the exit status 128 + number, as in a shell."""
+    """An exception for a signal, which ends the command with the exit status 128 + number."""
 
     def __init__(self, number: int) -> None:
         ended = f"ended by {signal.Signals(number).name}"

@@ -515,7 +515,7 @@ class Run(Scope):
         return tuple(line for lines in self.refused.values() for line in lines)
 
     def is_elsewhere(self, result: Result, *documents: str) -> bool:
-        """Whether a check fails only for inputs or lobes that no document with its node uses."""
+        """Whether a check only fails for inputs or lobes that no document with the node uses."""
         from mxeon.conformance.results.known_issues import blamed
 
         region, groups = result.diagnosis.region, blamed(result)
@@ -536,7 +536,7 @@ class Run(Scope):
 def _words() -> ModuleType:
     """The module that makes sentences from results.
 
-    The import is late because the module imports this module.
+    The import is late because `words` imports this module.
     """
     from mxeon.conformance import words
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known defects, which are described in the pages of docs/upstream, and the results they explain.
+"""Known defects, which are described in docs/upstream, and the results that show the defects.
 
-Each page begins with the data of the defect.
+Each page in docs/upstream begins with the data of a defect.
 """
 
 import json
@@ -185,8 +185,8 @@ def with_pages(result: Result, materialx: str = "") -> Result:
     """A result with the pages of the issues that explain the result.
 
     `materialx` is the folder whose `libraries` were judged instead of the installed libraries. A
-    copy of MaterialX's libraries has the issues of the library "stock", except issues that the copy
-    repairs.
+    copy of MaterialX's libraries has the same issues as the library "stock", except issues that the
+    copy repairs.
     """
     if result.verdict not in (FAILED, DIFFERS):
         return replace(result, pages=())

@@ -11,7 +11,7 @@ _SCALED = "pi f cos, relative above 1"
 
 
 class Quantity(Enum):
-    """A measured quantity, with a key in results.json, a unit, and a meaning unless obvious."""
+    """A quantity, with a key in results.json, a unit, and the unit's meaning unless obvious."""
 
     # Values in direct light.
     VALUE = "value", _SCALED, _LARGE

@@ -210,7 +210,7 @@ def _judge(policy: Policy) -> Judge:
 
 
 def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
-    """The run with a plan, and with the findings of completed tasks by task number."""
+    """The run that consists of a plan and of the findings of completed tasks, by task number."""
     done = [findings[number] for number in sorted(findings)]
     notes = [note for each in done for note in each.notes]
     refused = dict(planned.refused)
@@ -225,7 +225,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
         notes.append((warning, "every result"))
-    places: dict[str, list[str]] = {}  # places that are not in the text of a note, by note
+    places: dict[str, list[str]] = {}  # note -> places that the note does not name
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).extend([] if place in text else [place])
     hosts = tuple(dict.fromkeys(host for each in done for host in each.hosts))

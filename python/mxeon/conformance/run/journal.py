@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run. The findings of a task are written to disk as soon as the task ends.
+"""The journal of a run, which records the findings of a task as soon as the task ends.
 
 The file `journal/items.jsonl` in a run's folder has JSON Lines. The first line contains the plan of
 the run, with mxeon's version, the options and the hashes of files. A run can only be resumed with
@@ -130,9 +130,10 @@ class Journal:
         self._file = os.open(self._path, os.O_WRONLY | os.O_APPEND | BINARY)
 
     def add(self, number: int, findings: Findings) -> None:
-        """Record the findings of a task after writing the pictures. All data are then on disk.
+        """Record the findings of a task.
 
-        Raises OSError if the disk is full. In this case, the journal is unchanged.
+        The pictures are written first. When the method returns, all data are on disk. Raises
+        OSError if the disk is full. In this case, the journal is unchanged.
         """
 
         def stored(picture: Picture) -> Picture:

@@ -70,8 +70,8 @@ def read_documents(
 ) -> Reading:
     """Read documents with each library, in worker processes unless `workers` is 0.
 
-    A document that crashes a worker counts as empty, because the task that draws the document
-    reports the crash. Raise MxeonError if a library cannot be used.
+    A document that crashes a worker counts as empty. The task that draws the document reports the
+    crash. Raise MxeonError if a library cannot be used.
     """
     sources = [(file, library) for file in dict.fromkeys(files) for library in libraries]
     titles: dict[str, dict[str, set[Region]]] = {file: {} for file in files}
@@ -79,7 +79,8 @@ def read_documents(
     with closing(_nodes(sources, policy, workers, timeout)) as answers:
         for (file, library), nodes in zip(sources, answers, strict=True):
             if isinstance(nodes, DocumentError):
-                # If a bundled example cannot be read, the library is at fault and not the example.
+                # If a bundled example cannot be read, the library is at fault, and the example is
+                # not refused.
                 if not Path(file).resolve().is_relative_to(examples_folder()):
                     faults[file, library] = nodes.args
             elif isinstance(nodes, MxeonError):
@@ -280,7 +281,7 @@ def make_plan(
     # If there are documents or several libraries, every library is judged on all nodes.
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
-        # A file is refused if this library cannot read the file.
+        # A file is refused if the file cannot be read with this library.
         names = ((str(file), f"{file} with {library}") for file in files)
         readable = [each[0] for each in names if reading.refused.keys().isdisjoint(each)]
         paths = list(map(Path, readable)) if files else _examples(library)
