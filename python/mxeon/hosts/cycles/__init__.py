@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's Cycles: OSL on the CPU, in its own process.
+"""Blender's renderer Cycles, which runs OSL on the CPU in a separate process.
 
-Cycles is part of the Python module `bpy`, which needs its own environment. This half of the host
+Cycles is part of the Python module `bpy`, which needs a separate environment. This half of the host
 writes OSL files and reads float32 pictures, which `worker.py` renders.
 """
 
@@ -34,8 +34,8 @@ Socket: TypeAlias = float | Sequence[float]  # value of a Blender node's input
 
 PICTURES = 64  # cached pictures, which the checks of a node share
 
-# Start of a block that sets the globals `u`, `v` and `dPdu` as in `mxeon.shaders.scene`, because
-# Cycles has no surface coordinates on a point cloud.
+# Start of a block in which local variables hide the globals `u`, `v` and `dPdu`, because Cycles has
+# no surface coordinates on a point cloud. The values are as in `mxeon.shaders.scene`.
 TEXCOORD = """{
     float u = 0.5 + atan2(N[0], N[2]) / M_2PI;
     float v = 0.5 + atan2(N[1], hypot(N[0], N[2])) / M_PI;
@@ -46,9 +46,9 @@ SKY_SAMPLES = 64  # paths per pixel under a sky
 
 
 class CyclesHost(PairHost):
-    """Blender's Cycles, with its process and a temporary folder.
+    """Blender's Cycles in a separate process, with a temporary folder.
 
-    `sources` is the folder of the OSL files whose functions `call` executes, by default eonlib's.
+    `call` executes functions of OSL files in the folder `sources`, which is eonlib's by default.
     """
 
     name = "cycles"
@@ -67,12 +67,12 @@ class CyclesHost(PairHost):
         return Identity(self.name, f"Blender {self.worker.version}", "CPU, OSL")
 
     def picture(self, shader: generation.Shader, scene: Scene) -> Array:
-        """Picture of the sphere with an OSL shader, float32; an environment must be uniform.
+        """Float32 picture of the sphere with an OSL shader. An environment must be uniform.
 
         Under a distant light, pixels are exact up to float32. Under an environment, a pixel is a
-        mean of `process.ENVIRONMENT_SAMPLES` samples with a fixed seed: at roughness 1, the error
-        is 2e-3 rms, 0.1 at the rim, and 2e-5 in the mean over the sphere. NotRun if Cycles lacks a
-        closure.
+        mean of `process.ENVIRONMENT_SAMPLES` samples with a fixed seed. At roughness 1, the error
+        is then 2e-3 rms, 0.1 at the rim, and 2e-5 in the mean over the sphere. Raises NotRun if
+        Cycles lacks a closure.
         """
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):
@@ -88,7 +88,7 @@ class CyclesHost(PairHost):
     def _values(self, query: Query) -> Array:
         if query.branch != GRAPH:
             return super()._values(query)
-        # Emit the color of the uniform EDF, without the statements that follow the EDF.
+        # The shader emits the color of the uniform EDF. Statements that follow the EDF are dropped.
         shader = query.shader
         call = re.search(r"\n *EDF \w+ = uniform_edf\((\w+)\);", shader.stages["pixel"])
         if not call:
@@ -127,7 +127,7 @@ class CyclesHost(PairHost):
         return values / (DISTANCE**2 * scene.irradiance) if light == LAMP else values
 
     def blender_node(self, kind: str, inputs: Mapping[str, Socket], scene: Scene) -> Array:
-        """Picture of the sphere with a Blender node and `inputs` by socket."""
+        """Picture of the sphere with a Blender node. The keys of `inputs` are names of sockets."""
         native = {"native": {"kind": kind, "inputs": dict(inputs)}}
         return self._picture("", json.dumps(process.request(scene, ()) | native))
 
@@ -159,7 +159,7 @@ class CyclesHost(PairHost):
         return image
 
     def _render(self, folder: Path, text: str, **frame: object) -> Array:
-        # An unsupported closure makes the whole shader black, and prints an error.
+        # If a closure is unsupported, the whole shader is black and Cycles prints an error.
         for line in self.worker.render(folder, text, **frame):
             if line.startswith("ERROR"):
                 raise NotRun(f"cycles: {line.partition(', called from')[0]}")

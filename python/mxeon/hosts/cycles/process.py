@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's process: its interpreter, and how Cycles samples a picture.
+"""The process in which Blender runs, and the numbers of samples and bounces in Cycles.
 
-A point cloud is an exact sphere, but Cycles finds no exit for paths inside a point, so materials
-with lobes below the surface are rendered on a mesh.
+A point of a point cloud is an exact sphere. Paths that enter the point find no exit in Cycles,
+however, so materials with lobes below the surface are rendered on a mesh.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
 
-CHECKOUT = data_folder()  # contains no environment in an installed package
+CHECKOUT = data_folder()  # no checkout, and no environment, if the package is installed
 
 
 def interpreter(name: str = "cycles") -> Path:
-    """Path of the Python with `bpy`: MXEON_CYCLES_PYTHON, or the checkout's `.venv-cycles`.
+    """Path of a Python with `bpy`, from MXEON_CYCLES_PYTHON or the checkout's `.venv-cycles`.
 
     For security, a `.venv-cycles` in the working folder is ignored.
     """
@@ -38,13 +38,13 @@ def interpreter(name: str = "cycles") -> Path:
 
 
 class Blender(Worker):
-    """A process of Blender, which renders OSL or a node of Blender's."""
+    """A process of Blender that renders OSL shaders or Blender's own nodes."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name, interpreter(name), Path(__file__).with_name("worker.py"))
 
     def render(self, folder: Path, text: str = "", **frame: object) -> list[str]:
-        """Render a shader's text, or a node, to PICTURE in a folder; return the printed lines."""
+        """Render a shader's text or a node to PICTURE in a folder, and return the printed lines."""
         if text:
             (folder / "shader.osl").write_text(text, encoding="utf-8")
             frame["shader"] = str(folder / "shader.osl")
@@ -57,22 +57,23 @@ class Blender(Worker):
 
 
 PICTURE = "output.exr"
-# Samples of a pixel; 1 is enough under a distant light.
+# Numbers of samples per pixel. One sample is enough under a distant light.
 ENVIRONMENT_SAMPLES = 256
 INNER_SAMPLES = 64
 # A random walk below the surface counts as one bounce, and on a convex body no second bounce
-# follows. Refracted light is reflected inside: under a uniform sky, a sphere of dielectric_bsdf is
-# equally bright with 6 and 16 bounces in float32, and darker by 1e-3 with 2 bounces.
+# follows. Refracted light is reflected several times inside a body. Under a uniform sky, a sphere
+# of dielectric_bsdf is equally bright with 6 and 16 bounces in float32, and darker by 1e-3 with 2
+# bounces.
 SURFACE_BOUNCES, REFRACTED_BOUNCES = 1, 8
 
-DARK = Scene("dark")  # a scene without light, for emission or other lights
-# OSL expressions of a point's place in an image on the body "plane".
+DARK = Scene("dark")  # a scene without light, to which a request may add a light
+# OSL expressions of a point's image coordinates on the body "plane".
 PLACE = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"
-FEWEST_SAMPLES = 16  # minimum for lobes below the surface, which are too noisy with fewer
+FEWEST_SAMPLES = 16  # minimum number for lobes below the surface, because of noise
 
 
 def request(scene: Scene, lobes: Sequence[str]) -> dict[str, Any]:
-    """The worker's parameters for a scene and a material with these lobes below its surface."""
+    """Parameters of the worker for a scene and a material with `lobes` below the surface."""
     samples = ENVIRONMENT_SAMPLES if scene.environment is not None else 1
     return {
         "size": scene.size,
@@ -86,7 +87,7 @@ def request(scene: Scene, lobes: Sequence[str]) -> dict[str, Any]:
 
 
 def approximations(scene: Scene, lobes: Sequence[str]) -> tuple[str, ...]:
-    """Reasons why a picture of these lobes is wrong: too few or too short paths."""
+    """Reasons why a picture of these lobes is wrong, if paths are too few or too short."""
     if not lobes:
         return ()
     paths, reasons = request(scene, lobes), []

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python.
 
-`mxeon.hosts.process` starts it.
+`mxeon.hosts.process` starts this script.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import bpy  # first, since it makes Blender's other modules importable
+import bpy  # the first import, because it makes Blender's other modules importable
 
 # isort: split
 import _cycles
@@ -24,17 +24,17 @@ from mathutils import Vector
 Blender: TypeAlias = Any  # an object of bpy, which has no types
 JsonObject: TypeAlias = dict[str, Any]
 
-# Script nodes read their sockets with `oslquery` from Blender's own Python folder.
+# Script nodes determine sockets with the module `oslquery`, from Blender's own Python folder.
 BUNDLED = Path(bpy.utils.resource_path("LOCAL"), "python", "lib")
 sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
 
 
-SUBDIVISIONS = 7  # 81,920 triangles with edges within 1e-4 of the sphere
+SUBDIVISIONS = 7  # a sphere of 81,920 triangles, with edges that deviate by at most 1e-4
 KINDS = ("objects", "cameras", "meshes", "pointclouds", "materials", "lights", "worlds", "images")
 
 
 def unit_scene(distance: float) -> Blender:
-    """An empty scene, the square [-1, 1]^2 seen orthographically from z = `distance`.
+    """An empty scene with an orthographic camera at z = `distance` that sees [-1, 1]^2.
 
     The objects of earlier requests are removed one by one, because reloading Blender's settings
     would take as long as a picture.
@@ -63,7 +63,7 @@ def set_output(scene: Blender, path: str, size: int) -> None:
 
 
 def add_sphere(scene: Blender, radius: float, material: Blender) -> None:
-    """Add an exact sphere around the origin, a point cloud of one point, with `material` on it."""
+    """Add an exact sphere with `material` around the origin, as a point cloud of one point."""
     mesh = bpy.data.meshes.new("sphere")
     mesh.from_pydata([(0.0, 0.0, 0.0)], [], [])
     sphere = bpy.data.objects.new("sphere", mesh)
@@ -77,7 +77,7 @@ def add_sphere(scene: Blender, radius: float, material: Blender) -> None:
 
 
 def add_mesh(scene: Blender, radius: float, material: Blender) -> None:
-    """Add a sphere of smooth triangles around the origin, with `material` on it."""
+    """Add a sphere of smooth triangles with `material` around the origin."""
     mesh, builder = bpy.data.meshes.new("sphere"), bmesh.new()
     bmesh.ops.create_icosphere(builder, subdivisions=SUBDIVISIONS, radius=radius)
     builder.to_mesh(mesh)
@@ -90,7 +90,7 @@ def add_mesh(scene: Blender, radius: float, material: Blender) -> None:
 def add_triangles(
     scene: Blender, points: Sequence[Any], triangles: Sequence[Any], material: Blender
 ) -> Blender:
-    """Add triangles, with `material` on them, and return their object."""
+    """Add an object of triangles with `material`, and return the object."""
     mesh = bpy.data.meshes.new("triangles")
     mesh.from_pydata(points, [], triangles)
     mesh.materials.append(material)
@@ -100,7 +100,7 @@ def add_triangles(
 
 
 def add_lamp(scene: Blender, distance: float) -> None:
-    """Add a light at the point (-distance, 0, 0), of irradiance 1 at that distance."""
+    """Add a point light at (-distance, 0, 0), with irradiance 1 at the origin."""
     lamp = bpy.data.lights.new("light", "POINT")
     lamp.shadow_soft_size = 0.0
     lamp.energy = 4.0 * math.pi * distance * distance
@@ -161,8 +161,8 @@ def render(
 ) -> None:
     """Render the OSL file `shader`, or a Blender node, on a body or on the triangles in a file.
 
-    Every sample is at its pixel's center. The body is "points" (an exact sphere), "mesh" (a sphere
-    of triangles) or "plane" (a triangle that fills the picture).
+    Every sample is at the center of a pixel. The body is "points" (an exact sphere), "mesh" (a
+    sphere of triangles) or "plane" (a triangle that fills the picture).
     """
     compiled = ""
     if shader:
@@ -174,7 +174,7 @@ def render(
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
-    cycles.shading_system = native is None  # OSL
+    cycles.shading_system = native is None  # whether to use OSL
     cycles.samples = samples
     cycles.use_adaptive_sampling = False
     cycles.light_sampling_threshold = 0.0
@@ -220,7 +220,7 @@ def draw(
     environment: float | None,
     samples: int,
 ) -> None:
-    """Draw the mesh in a file with EEVEE and a node; write the pixels, row 0 at the top."""
+    """Draw the mesh in a file with a node in EEVEE, and write the pixels, row 0 at the top."""
     path, data, scene = f"{output}.exr", np.load(mesh), unit_scene(2.0)
     set_output(scene, path, size)
     scene.render.engine = "BLENDER_EEVEE"

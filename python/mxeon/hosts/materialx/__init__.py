@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MaterialX's own renderer on OpenGL, `MaterialXRenderGlsl`: what MaterialXView shows.
+"""MaterialX's OpenGL renderer `MaterialXRenderGlsl`, which MaterialXView uses.
 
-The renderer generates the same shader as the host `gl`, and binds lights, environment and uniforms
-itself. Without an X display it ends the process, so `worker.py` runs in its own process, and starts
-Xvfb if DISPLAY names no display.
+The renderer generates the same shader as the host `gl`, but sets lights, environment and uniforms
+itself. Without an X display, the renderer ends the process. Therefore `worker.py` is a separate
+process, and starts Xvfb if DISPLAY names no display.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mxeon.shaders.methods import GENERATED
 
 
 class MaterialXHost(DocumentHost):
-    """The GlslRenderer of this MaterialX, in float32; see `DocumentHost`."""
+    """The GlslRenderer of the installed MaterialX, in float32; see `DocumentHost`."""
 
     name = "materialx"
     default = GENERATED

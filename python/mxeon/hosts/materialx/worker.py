@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `materialx` host in which MaterialX's renderer runs; see `mxeon.hosts.process`.
 
-The arguments of `start` are the folder whose `libraries` replace MaterialX's, or "", and the
-folders of other libraries. The display ends with the process.
+The first argument of `start` is a folder whose `libraries` replace the libraries of MaterialX, or
+"". The other arguments are folders of other libraries. The X display ends with the process.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ from mxeon.shaders.methods import TABLE_SIZE  # noqa: E402
 from mxeon.shaders.options import set_options  # noqa: E402
 
 Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
-FAR = 1e6  # distance of the camera; the shader computes the view from its position
+FAR = 1e6  # distance of the camera, from whose position shaders compute the view
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
 PICTURES = 8  # cached renderers, each with the program of a document
 ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")
 SCREEN = ("-screen", "0", "64x64x24", "-nolisten", "tcp")
-DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl
+DIES_WITH_PARENT = 1  # the option PR_SET_PDEATHSIG of prctl
 RENDERER = 0x1F01  # argument of glGetString
 OPENGL = {
     "darwin": "/System/Library/Frameworks/OpenGL.framework/OpenGL",
@@ -56,7 +56,7 @@ RAISED = (mx.Exception, mx_render.ExceptionRenderError, LookupError)
 
 
 def open_display() -> None:
-    """Make DISPLAY name a display: the existing one, or an Xvfb that ends with this process."""
+    """Start an Xvfb that ends with this process, unless DISPLAY already names a display."""
     if sys.platform != "linux" or os.environ.get("DISPLAY"):
         return
     program = shutil.which("Xvfb")
@@ -147,7 +147,7 @@ def open_renderer() -> mx_render_glsl.GlslRenderer:
 
 
 def albedo_table(generator: mx_gen.ShaderGenerator, content: mx.Document) -> mx_render.Image:
-    """The table of albedos by Monte Carlo, drawn by the library's shader."""
+    """The table of albedos, which a shader of the library computes by Monte Carlo integration."""
     context = mx_gen.GenContext(generator)
     context.registerSourceCodeSearchPath(SEARCH_PATH)
     context.getOptions().hwWriteAlbedoTable = True
@@ -163,7 +163,7 @@ def albedo_table(generator: mx_gen.ShaderGenerator, content: mx.Document) -> mx_
 
 @lru_cache(maxsize=2)
 def geometry(path: str) -> mx_render.GeometryHandler:
-    """The quads in a NumPy file; cached, because MaterialX reads them slowly from an OBJ file."""
+    """The quads in a NumPy file, cached because MaterialX takes long to read an OBJ file."""
     data, target = np.load(path), Path(path).with_suffix(".obj")
     lines = [
         f"{word} {' '.join(f'{number:.9g}' for number in row)}"
@@ -183,7 +183,7 @@ def start(
     root: str, *folders: str
 ) -> tuple[dict[str, str], Callable[..., None], tuple[type[Exception], ...]]:
     global SEARCH_PATH
-    # MaterialX reads textures anisotropically, and Mesa's filter for that blurs.
+    # MaterialX reads textures with anisotropic filtering, which blurs on Mesa.
     os.environ["MESA_EXTENSION_OVERRIDE"] = " ".join(f"-{each}" for each in ANISOTROPY)
     open_display()
     if root:
@@ -201,7 +201,7 @@ def start(
         shown = picture(document, element, tuple((methods or {}).items()))
         np.save(output, shown.draw(**draw))
 
-    first.setSize(1, 1)  # make its context current
+    first.setSize(1, 1)  # make the context of `first` current
     function = ctypes.CDLL(OPENGL.get(sys.platform, "libGL.so.1")).glGetString
     function.restype = ctypes.c_char_p
     device = str(function(RENDERER).decode())

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL without a renderer: compile and run generated OSL, and print its closures.
+"""Generated OSL that prints the closures of a shader, for checks that need no renderer.
 
-    generated text --carriers--> labels instead of closures --Blender's OSL--> a line for each point
-    --trees--> one tree of arrays --`mxeon.conformance.reference.closures`--> values by the models
-
-This checks MaterialX's text independently of any renderer.
+1. `carriers` is OSL text that makes closures of a generated text return labels.
+2. OSL in Blender runs the text and prints a line for each point.
+3. `trees` turns the lines into trees of arrays.
+4. `mxeon.conformance.reference.closures` computes the values of a tree by the reference models.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from mxeon.hosts.osl.points import Column, row
 from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label
 from mxeon.shaders.generation import Shader
 
-LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # row of a point, label, text of the label
+LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # matches row of a point, label, text
 VERSION = "float version(float x)\n{\n    return OSL_VERSION;\n}\n"
-# OSL's global I points to the surface. A macro replaces I, because functions that read the global
-# do not see local variables.
+# The global variable I of OSL points towards the surface. A macro replaces I, because a function
+# that reads a global variable would not see a local variable of the same name.
 VIEW = """
 vector mxeon_view()
 {{
@@ -41,13 +41,13 @@ TROUBLE = ("ERROR", "WARNING")  # first words of Blender's messages
 ROOT = "root"
 SHADERS, POINTS = 8, 1 << 14  # cached shaders, and cached points per shader
 VIEWED = re.compile(r"\bI\b")  # matches texts that read the view
-# Statements that print the label of a color or a closure.
+# Statement that prints the label of a color or a closure.
 PRINT = f'printf("mxeon %d {ROOT} %s\\n", MXEON_ROW, mxeon_text({{0}}));'
 LAST = f"    {PRINT.format('{output}')}\n    {{output}} = 0;\n"
 
 
 class OslHost(base.Host):
-    """Blender's OSL, at each pixel of a plane."""
+    """OSL in Blender, which runs a shader at each pixel of a plane."""
 
     name = "osl"
     target = "osl"
@@ -73,11 +73,11 @@ class OslHost(base.Host):
         """Trees of a shader's closures, with their arguments and weights.
 
         `wo`, shape (N, 3), and `inputs` are as in `evaluate`. Points whose closures differ only in
-        numbers share a tree. ShaderError for a closure that OSL does not document.
+        numbers share a tree. Raises ShaderError for a closure that OSL does not document.
         """
         text, columns = shader.stages["pixel"], points.columns_of(shader, inputs)
         view = Column("vector", wo)
-        # Closures do not depend on the light, and mostly not on the view, so checks repeat points.
+        # Closures never depend on the light, and rarely on the view, so checks repeat points.
         read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
         values = [np.broadcast_to(each.rows, (len(wo), each.rows.shape[1])) for each in read]
         keys = [row.tobytes() for row in np.concatenate(values, axis=1)]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL text before a generated shader that turns its closures into printable labels.
+"""OSL text that precedes a generated shader and turns closures into printable labels.
 
-OSL prints closures with six digits, and only closures that the renderer supports. Here every
-closure of MaterialX, and every operation on closures, is a function that returns a holdout, labeled
-with its text as JSON. Nine digits restore a float32 exactly. The shader itself is unchanged.
+OSL prints closures with six digits, and only closures that the renderer supports. Therefore, every
+closure of MaterialX and every operation on closures becomes a function that returns a holdout. The
+label of the holdout stands for text in JSON, in which numbers have nine digits and are therefore
+exact in float32. The shader itself is unchanged. An example of such text, shortened:
 
     ["layer",["mul",0.5,["sheen_bsdf",[0,0,1],[1,1,1],0.300000012]],["burley_diffuse_bsdf",...]]
 """
@@ -24,12 +25,12 @@ class Signature:
     """Arguments of a closure, as OSL's stdosl.h documents them."""
 
     arguments: Mapping[str, str]  # OSL types by name, in order
-    keywords: tuple[str, ...]  # `label` has no effect and is not included
+    keywords: tuple[str, ...]  # all keywords except `label`, which has no effect
     kind: str  # type of the keywords' values; OSL drops a keyword with another type
 
 
-# Keywords follow a semicolon. `energy_compensation` came with OSL 1.14.1, and `mode` with OSL 1.13;
-# stdosl.h does not name these two.
+# Keywords follow a semicolon. OSL 1.14.1 added `energy_compensation` and OSL 1.13 added `mode`, but
+# stdosl.h does not mention these two keywords.
 SIGNATURES = """
 oren_nayar_diffuse_bsdf(normal normal, color color, float roughness; int energy_compensation)
 burley_diffuse_bsdf(normal normal, color color, float roughness)
@@ -66,7 +67,7 @@ CLOSURES = {name: _signature(text) for name, text in re.findall(r"(\w+)\(([^)]*)
 # Text that Blender's OSL prints before and after the label of a closure.
 BEFORE, AFTER = '(1, 1, 1) * holdout ("label", "', '")'
 # OSL truncates formatted closures after 1024 characters, and Blender truncates lines. Each closure
-# is therefore printed where it is created, and labeled with the hash of its text.
+# is therefore printed when it is created, and the label is a hash of the closure's text.
 LABELS = """\
 closure color mxeon_label(string text)
 {{
@@ -90,17 +91,17 @@ string mxeon_text(closure color x)
 
 
 def prelude(text: str) -> str:
-    """OSL that turns a text's CLOSURES, and OPERATIONS on them, into labels."""
+    """OSL that turns the CLOSURES in a text, and OPERATIONS on closures, into labels."""
     start = len(BEFORE)
     labels = LABELS.format(before=BEFORE.replace('"', '\\"'), start=start, rest=start + len(AFTER))
-    names = [name for name in CLOSURES if name in text]  # unused ones would cost compile time
+    names = [name for name in CLOSURES if name in text]  # other closures take time to compile
     closure = "closure color"
     lines = [
         labels,
         _function("mxeon_layer", LAYER, closure, closure),
         _function("__operator__add__", SUM, closure, closure),
     ]
-    # Operations on weights and shares; this `mix` hides stdosl.h's.
+    # A factor is a float or a color. This function `mix` hides the function `mix` of stdosl.h.
     for kind in ("float", "color"):
         lines += [
             "#pragma osl nowarn",
@@ -108,14 +109,14 @@ def prelude(text: str) -> str:
             _function("__operator__mul__", MULTIPLE, closure, kind),
             _function("__operator__mul__", MULTIPLE, kind, closure),
         ]
-    # Closures with any keywords, so that unknown ones are reported.
+    # Closures accept any keywords, so that unknown keywords are reported.
     for name in names:
         arguments = (*CLOSURES[name].arguments.values(),)
         for count in range(PAIRS + 1 if arguments else 1):
             for kinds in product((CLOSURES[name].kind, "string"), repeat=count):
                 pairs = (each for kind in kinds for each in ("string", kind))
                 lines.append(_function(f"mxeon_{name}", name, *arguments, *pairs))
-    # Built-in functions cannot be hidden, only renamed.
+    # Built-in functions cannot be hidden, so macros rename the functions in calls.
     lines += [f"#define {name} mxeon_{name}" for name in (*names, "layer")]
     return "\n".join([*lines, ""])
 

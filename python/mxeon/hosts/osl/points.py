@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values for each point of a run: images with a pixel per point, and OSL that reads the images."""
+"""Values of variables at points, in images with one pixel per point, and OSL that reads images."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from mxeon.io.images import write_image
 from mxeon.shaders import functions
 from mxeon.shaders.generation import Shader
 
-LEAST_SIZE = 4  # pixels on a side; Blender renders no smaller picture
-# MaterialX's types in OSL.
+LEAST_SIZE = 4  # minimum width in pixels, because Blender renders no smaller pictures
+# OSL types by MaterialX type.
 TYPES = {"color3": "color", "vector3": "vector", "boolean": "int", "integer": "int"}
 WIDTHS = {"color": 3, "vector": 3, "normal": 3, "vector2": 2}
-# OSL that computes the row of a point from the point's place in the picture.
+# OSL that computes the row of a point from the point's position in the picture.
 ROW = """#define MXEON_AT(x, y) ((int) floor({size} * (y)) * {size} + (int) floor({size} * (x)))
 #define MXEON_ROW MXEON_AT({place})
 """
 FILTER = '0.0, 0.0, 0.0, 0.0, "interp", "closest"'
-# Blender 5.3 ignores "firstchannel" and "closest" and turns images upside down. Therefore the
-# columns are side by side in an image of three channels, a mirror image follows below, and a point
-# has 2 x 2 equal pixels.
+# Blender 5.3 ignores "firstchannel" and "closest", and turns images upside down. Therefore, the
+# image has three channels, columns are side by side, a mirror image is below the upright image, and
+# each point has 2 x 2 equal pixels.
 READ = f'texture("{{image}}", ({{column}} + {{x}}) / {{columns}}, 0.5 * ({{y}}), {FILTER})'
 NO_WARNING = "#pragma osl nowarn"  # oslc warns if a surface shader sets a global
-IMAGE = "points.tif"  # name of the image; EXR would sort more than ten channels by name
+IMAGE = "points.tif"  # name of the image
 
 
 @dataclass(frozen=True)
 class Column:
-    kind: str  # OSL's type
-    values: ArrayLike  # one per point, or one for all
-    declared: bool = True  # otherwise assigned to a global variable of OSL
+    kind: str  # OSL type
+    values: ArrayLike  # one value per point, or one value for all points
+    declared: bool = True  # whether the variable is declared; if not, it is a global variable
 
     @property
     def rows(self) -> NDArray[np.float32]:
-        """The values, (N or 1, components)."""
+        """The values as rows, (N or 1, components)."""
         return np.asarray(self.values, np.float32).reshape(-1, WIDTHS.get(self.kind, 1))
 
     def take(self, rows: NDArray[np.intp]) -> Column:
@@ -57,21 +57,21 @@ def side(count: int) -> int:
 
 
 def row(count: int, place: str) -> str:
-    """OSL that defines MXEON_ROW, the row of one of `count` points, by its place in an image."""
+    """OSL that defines MXEON_ROW, the row of a point among `count` points in a picture."""
     return ROW.format(size=side(count), place=place)
 
 
 def statements(columns: Mapping[str, Column], image: Path, count: int, place: str) -> list[str]:
     """OSL statements that read a point's variables exactly from a float32 image.
 
-    `place` has the OSL expressions of the coordinates at which a point reads its pixel, unfiltered.
+    `place` consists of two OSL expressions, which are the coordinates at which a point reads.
     """
     lines, size, (x, y) = [], side(count), place.split(", ")
     pixels = np.zeros((size * size, len(columns), 3), np.float32)
     for number, (name, column) in enumerate(columns.items()):
         pixels[:count, number, : column.rows.shape[1]] = column.rows
         read = READ.format(image=image.as_posix(), column=number, columns=len(columns), x=x, y=y)
-        # Textures have no normals, vector2 and int.
+        # Texture lookups cannot return a normal, a vector2 or an int.
         if column.kind == "vector2":
             lines += [f"color {name}_xy = {read};"]
             lines += [f"vector2 {name} = vector2({name}_xy[0], {name}_xy[1]);"]
@@ -103,8 +103,8 @@ def call_text(
 ) -> tuple[str, int]:
     """Text of a shader that calls a function of `source` at each point, and the number of points.
 
-    `image` and `place` are as in `statements`; `output` declares the shader's output, and `last` is
-    the last statement, with {} for the value, a color.
+    `image` and `place` are as in `statements`. `output` declares the shader's output. `last` is the
+    last statement, with {} for the value, which is a color.
     """
     parameters = functions.parameters(source, function)
     if len(parameters) != len(arguments):
@@ -120,7 +120,7 @@ def call_text(
 
 
 OUTPUT = re.compile(r"\boutput MATERIAL (\w+) *=")
-# OSL types, names of inputs, and default values of the surface's globals.
+# OSL type, name of the input, and default value of each global variable of the surface.
 SURFACE = {
     "N": ("normal", "normal", (0.0, 0.0, 1.0)),
     "dPdu": ("vector", "tangent", (1.0, 0.0, 0.0)),
@@ -131,7 +131,7 @@ SURFACE = {
 def columns_of(
     shader: Shader, inputs: Inputs, turned: Callable[[Array], Array] = lambda rows: rows
 ) -> Mapping[str, Column]:
-    """Columns of the surface and a shader's inputs by variable name; `turned` maps directions."""
+    """Values for the surface and a shader's inputs, by variable. `turned` rotates directions."""
     columns = {
         variable: Column(kind, inputs.get(name, default), declared=False)
         for variable, (kind, name, default) in SURFACE.items()
@@ -154,10 +154,10 @@ def with_variables(
     place: str,
     last: str,
 ) -> str:
-    """Text of a shader that reads variables at each point, with another statement at its end.
+    """Text of a shader that reads variables at each point, with one more statement at the end.
 
-    The variables, as in `statements`, hide inputs of the shader. `last` is the statement at the
-    end, with {output} for the name of the shader's output.
+    The variables hide inputs of the shader; see `statements` for the arguments. `last` is the
+    statement at the end, with {output} for the name of the shader's output.
     """
     head, brace, body = shader.stages["pixel"].rpartition("\n)\n{\n")
     main, end, _ = body.rpartition("}")
@@ -171,7 +171,7 @@ def indented(lines: Iterable[str]) -> str:
 
 
 def with_header(text: str, shader: Shader) -> str:
-    """A generated text with the full path of its include."""
+    """A generated text with the full path of the file that the text includes."""
     path = mx.FileSearchPath(shader.root) if shader.root else mx.getDefaultDataSearchPath()
     header = path.find("libraries/stdlib/genosl/include/mx_funcs.h").asString()
     return text.replace('"mx_funcs.h"', f'"{header}"')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Printed labels of closures as trees; rows that differ only in numbers share a tree of arrays."""
+"""Printed closures as trees. Closures that differ only in numbers share a tree of arrays."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mxeon.hosts.osl.carriers import CLOSURES, OPERATIONS
 Array: TypeAlias = NDArray[np.float64]
 
 DEEPEST = 200  # maximum nesting of closures
-LONGEST = 1 << 20  # maximum characters of an expanded label
+LONGEST = 1 << 20  # maximum number of characters in an expanded label
 LABEL = re.compile(r"@-?\d+")
 NUMBER = re.compile(r"(?<=[\[,])-?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|nan|inf)(?=[\],])")
 PLACEHOLDER = re.compile(r"(?<=[\[,])#")  # stands for a number
@@ -31,13 +31,13 @@ class ClosureTree:
 
     name: str  # key of CLOSURES or OPERATIONS
     parts: tuple[ClosureTree | None, ...] = ()  # operands of an operation
-    # Values by name, (N,) or (N, 3); an operation has only `factor`.
+    # Values of arguments by name, (N,) or (N, 3). The only argument of an operation is `factor`.
     arguments: Mapping[str, Array | str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class TreeRows:
-    """Rows of the points whose closures have the same shape, and their tree."""
+    """The tree of closures with the same structure, and the rows of the points that share it."""
 
     rows: NDArray[np.intp]
     tree: ClosureTree | None
@@ -56,7 +56,7 @@ def whole_label(texts: Mapping[str, str], root: str) -> str:
 
 
 def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
-    """Trees of labels, one per shape; ShaderError for closures that OSL does not document."""
+    """Trees of labels, one for each structure. Raises ShaderError for an undocumented closure."""
     shapes: dict[str, list[int]] = {}
     numbers = []
     for row, label in enumerate(labels):
@@ -64,7 +64,7 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
         numbers.append(NUMBER.findall(label))
     trees = []
     for shape, rows in shapes.items():
-        # Nine digits restore a float32.
+        # Numbers have nine digits, which determine a float32.
         values = np.array([numbers[row] for row in rows], np.float32).astype(np.float64)
         columns = count()
         text = PLACEHOLDER.sub(lambda _: str(next(columns)), shape)  # noqa: B023, used at once
@@ -77,7 +77,7 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
 
 
 def _tree(label: Any, numbers: Array) -> ClosureTree | None:
-    """Tree of a label in which columns of `numbers`, (points, columns), replace the numbers."""
+    """Tree of a label, in which a number is the index of a column of `numbers`."""
     if label is None:
         return None
     name, *values = label
@@ -86,7 +86,7 @@ def _tree(label: Any, numbers: Array) -> ClosureTree | None:
         factors = [numbers[:, each] for each in values if each not in parts]
         operands = tuple(_tree(each, numbers) for each in parts)
         return ClosureTree(name, operands, {"factor": factors[0]} if factors else {})
-    # The arguments of a closure come in order, then pairs of keywords and values.
+    # Pairs of keywords and values follow the positional arguments of a closure.
     signature, known = CLOSURES[name], (*CLOSURES[name].keywords, "label")
     positional = len(signature.arguments)
     keywords = values[positional::2]

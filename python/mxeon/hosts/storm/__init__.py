@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hydra Storm, USD's own renderer.
+"""Hydra Storm, the rasterizer of OpenUSD.
 
-Blender's package contains Storm, with its own versions of OpenUSD and MaterialX. This half of the
-host writes the document, and `worker.py` draws it.
+Storm is part of Blender's Python package, which also contains OpenUSD and MaterialX. This half of
+the host writes a document, and `worker.py` draws a picture of the material.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ CLOSURES = ("BSDF", "EDF", "VDF")
 
 
 class StormHost(DocumentHost):
-    """Storm on OpenGL without a window. Its pictures are half floats; see `DocumentHost`."""
+    """Storm on OpenGL without a window, with pictures of half floats; see `DocumentHost`."""
 
     name = "storm"
     default, fixed = STORM, True
 
     def transmitted(self, shader: Shader, size: int) -> Array:
-        """Share of a white card's light that passes the sphere, row 0 at the top."""
+        """Fraction of a white card's light that passes the sphere, by pixel, row 0 at the top."""
         dark = Scene("dark", size=size)
         return np.asarray(self._shown(shader, dark, card=True) - self._shown(shader, dark))
 
@@ -46,7 +46,7 @@ class StormHost(DocumentHost):
         return super()._shown(replace(shader, folders=folders), scene, card)
 
     def unread(self, shader: Shader) -> str:
-        """Report subsurface lobes, or enumerated inputs, for which Storm uses the defaults."""
+        """Report subsurface lobes, or enumerated inputs whose values Storm replaces by defaults."""
         if reason := super().unread(shader):
             return reason
         names = []
@@ -69,8 +69,8 @@ class StormHost(DocumentHost):
     def _needs_blocks(self, shader: Shader) -> bool:
         """Whether a shader has textures.
 
-        Outside a triangle, llvmpipe reads Storm's buffers as 0. The derivatives of texture
-        coordinates are then wrong, and textures are read at the wrong size.
+        In pixels outside a triangle, llvmpipe reads Storm's buffers as 0. The derivatives of
+        texture coordinates are then wrong, so textures are read at the wrong size.
         """
         return any(each.type == "filename" and each.value for each in shader.inputs)
 

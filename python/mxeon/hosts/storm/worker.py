@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The half of the `storm` host that runs in Blender's Python; see `mxeon.hosts.process`.
 
-The arguments of `start` are the folder whose `libraries` replace those of Blender's MaterialX, or
-"", and the folders of other libraries.
+The first argument of `start` is a folder whose `libraries` replace the libraries of Blender's
+MaterialX, or "". The other arguments are folders of other libraries.
 """
 
 from __future__ import annotations
@@ -23,30 +23,31 @@ from numpy.typing import NDArray
 
 Foreign: TypeAlias = Any  # an object of OpenUSD, or the result of a library function
 Pixels: TypeAlias = NDArray[np.float32]
-Type: TypeAlias = type[c_void_p | c_uint | c_char_p] | None  # result of a function of EGL or OpenGL
+Type: TypeAlias = type[c_void_p | c_uint | c_char_p] | None  # result type in EGL or OpenGL
 
 INSTALL, DEBIAN = "pip install bpy==5.0.1", "apt-get install libegl1 libgl1-mesa-dri"
 MODULES = ("Gf", "Sdf", "Tf", "Usd", "UsdGeom", "UsdImagingGL", "UsdLux", "UsdShade", "Vt")
-# Distance of the camera: Storm computes directions of view from the position of the camera, even of
-# an orthographic one.
+# Distance of the camera, which is large because Storm computes view directions from the position of
+# the camera, even for an orthographic projection.
 FAR = 1e6
-ANGLE = 0.1  # degrees, of the distant light, which is black with 0
-# Storm sums a dome's irradiance over a right angle in 64 steps. In float32 the steps add up to less
-# than the angle, so Storm adds a 65th and divides by 65: a white dome gives this irradiance.
+ANGLE = 0.1  # angle of the distant light in degrees; the light would be black with angle 0
+# Storm sums a dome's irradiance over a right angle in 64 steps. In float32, 64 steps add up to less
+# than the angle, so Storm adds a 65th step and divides by 65. The irradiance of a white dome is
+# therefore too small by this factor.
 WHITE_DOME = math.pi / 130.0 / math.tan(math.pi / 128.0)
-CARD = 2.0  # distance of a white card that emits, behind the picture
-# A white pixel in Radiance's format: a dome without a texture is black.
+CARD = 2.0  # distance from the origin to a white card that emits light, behind the quads
+# A white pixel in the Radiance format, for the dome, because a dome without a texture is black.
 WHITE_IMAGE = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n\x80\x80\x80\x81"
 
-# Names of EGL and OpenGL.
+# Values of constants in EGL and OpenGL.
 DEVICE, DESKTOP = 0x313F, 0x30A2
-CONFIG = (c_int * 5)(0x3040, 0x0008, 0x3033, 0, 0x3038)  # OpenGL, no surface
-# OpenGL 4.5, compatibility: Storm uses functions that the core profile lacks.
+CONFIG = (c_int * 5)(0x3040, 0x0008, 0x3033, 0, 0x3038)  # OpenGL without a surface
+# OpenGL 4.5 in the compatibility profile, because Storm uses functions that the core profile lacks.
 CONTEXT = (c_int * 7)(0x3098, 4, 0x30FB, 5, 0x30FD, 2, 0x3038)
 FRAMEBUFFER, BUFFER, COLOR, DEPTH = 0x8D40, 0x8D41, 0x8CE0, 0x8D00
 RGBA32F, DEPTH32F, RGBA, FLOAT = 0x8814, 0x8CAC, 0x1908, 0x1406
 BOTH, RENDERER = 0x4100, 0x1F01
-usd: Foreign = None  # OpenUSD, imported by `start`
+usd: Foreign = None  # the package of OpenUSD, which `start` imports
 
 
 class Handle(c_void_p):
@@ -54,7 +55,7 @@ class Handle(c_void_p):
 
 
 class Canvas:
-    """Float32 pixels, drawn by OpenGL 4.5 without a window, through EGL."""
+    """A frame of float32 pixels, which OpenGL 4.5 draws without a window through EGL."""
 
     def __init__(self) -> None:
         self._size, self._name = 0, c_uint()
@@ -193,19 +194,22 @@ class Stage:
 
 
 def import_usd(root: str, libraries: str) -> Foreign:
-    """OpenUSD of Blender's package, with `libraries` in addition to those of `root` or MaterialX."""
+    """Import OpenUSD from Blender's package.
+
+    `libraries` are added to the libraries of `root`, or of Blender's MaterialX if `root` is "".
+    """
     # Find Blender's package without importing it.
     found = find_spec("bpy")
     if found is None or not found.submodule_search_locations:
         raise ImportError("no package bpy")
     package = Path(found.submodule_search_locations[0])
     sys.path += map(str, package.glob("*/python/lib/python*/site-packages"))
-    # OpenUSD reads these variables when it is imported.
+    # The import of OpenUSD reads these environment variables.
     os.environ["PXR_PLUGINPATH_NAME"] = str(package / "lib" / "usd")
     standard = Path(root or package / "lib" / "materialx", "libraries")
     os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(standard)
     os.environ["PXR_MTLX_PLUGIN_SEARCH_PATHS"] = libraries
-    # Storm shows its picture through a texture, which Mesa's anisotropic filter blurs.
+    # Storm copies a picture by way of a texture, which Mesa's anisotropic filter would blur.
     os.environ["HGI_MAX_ANISOTROPY"] = "1"
     for name in MODULES:
         import_module(f"pxr.{name}")
