@@ -30,8 +30,8 @@ def checked(**names):
     return mxeon.check(**{"files": CLAY, "hosts": "msl"} | names)
 
 
-# Public parameters that accept names or paths: a call, a valid value, and whether several values
-# are accepted.
+# Public parameters that accept names or paths: a call with the parameter, a valid value, and
+# whether the parameter accepts several values.
 NAMES = {
     "files": (lambda x: checked(files=x), CLAY, True),
     "hosts": (lambda x: checked(hosts=x), "msl", True),
@@ -57,7 +57,7 @@ NAMES = {
 
 @pytest.fixture
 def short(monkeypatch, tmp_path):
-    """Restrict runs to one check, and enter an empty working folder."""
+    """Restrict runs to a single check, and enter an empty working folder."""
     keep_checks(monkeypatch, "document")
     monkeypatch.chdir(tmp_path)
 
@@ -72,7 +72,7 @@ def test_one_name_or_path_is_taken_and_several_where_there_may_be(short, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_anything_else_is_refused_in_a_sentence(short, name):
     wrong = [3, b"clay.mtlx", [3], [["eon"]]]
-    if name not in ("files", "nodes", "profile", "element"):  # optional ones may be None
+    if name not in ("files", "nodes", "profile", "element"):  # the listed names may be None
         wrong.append(None)
     if name in ("files", "hosts", "libraries", "nodes"):
         wrong.append([])
@@ -198,7 +198,7 @@ MISTAKES = {
 
 @pytest.mark.whole
 def test_a_type_checker_passes_the_gate_and_finds_mistakes_in_it(tmp_path):
-    """mypy checks the example strictly, without the checkout's settings, like a user's file."""
+    """Like a user's file, the example is checked strictly and without the checkout's settings."""
     wrong = GATE
     for right, (mistake, _) in MISTAKES.items():
         wrong = wrong.replace(right, mistake)

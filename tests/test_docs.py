@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The site has no dead links and needs no network, and names in the documentation exist."""
+"""The site has no dead link and needs no network, and names in the documentation exist."""
 
 import os
 import re
@@ -34,13 +34,14 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 FOLDERS = (
     "docs|tests|tools|examples|libraries|genglsl|genosl|python|models|shaders|hosts|conformance"
 )
-PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")  # skips placeholders
+# Placeholders for paths do not match the pattern.
+PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")
 SCRIPT = re.compile(r"python -m ((?:tests|tools)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
 
 
 def prose():
-    """Texts of all pages by file, without the changelog, which names removed features."""
+    """Texts of all pages by file. The changelog is left out, because it names removed features."""
     files = [ROOT / name for name in PROSE if name != "CHANGELOG.md"]
     files += sorted((ROOT / "docs").rglob("*.md"))
     return {file: file.read_text(encoding="utf-8") for file in files}
@@ -62,7 +63,7 @@ def site(tmp_path_factory):
 
 
 def test_the_site_has_no_dead_link_and_loads_nothing_from_elsewhere(site):
-    """The fixture `site` finds dead links: mkdocs.yml makes the build fail."""
+    """The fixture `site` fails for a dead link, because mkdocs.yml makes the build strict."""
     pages = [file.read_text(encoding="utf-8") for file in site.rglob("*.html")]
     styles = [file.read_text(encoding="utf-8") for file in site.rglob("*.css")]
     assert len(pages) > 30 and all("<script" in page for page in pages)
@@ -86,7 +87,7 @@ def test_every_link_of_the_prose_leads_to_a_file(name):
 def test_every_path_that_the_prose_names_exists_and_has_the_name_behind_the_colon():
     paths = {place for text in prose().values() for place in PATH.findall(text)}
     assert len(paths) > 50
-    # Pages on defects name files of MaterialX, and pages on design name files of the package.
+    # Pages on defects name files of MaterialX, and pages on the design name files of the package.
     folders = (ROOT, Path(mx.__file__).parent, ROOT / "python/mxeon")
     found = {place: [file for each in folders for file in each.glob(place[0])] for place in paths}
     assert sorted(place for place, files in found.items() if not files) == []
@@ -105,7 +106,7 @@ def test_every_module_that_the_prose_names_exists():
 
 
 def test_every_generated_file_is_that_of_today():
-    """`python -m tools.site` writes the same files; last digits may depend on the machine."""
+    """`python -m tools.site` would write the same files; last digits may depend on the machine."""
     number = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
     files = made()
     for path, text in files.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of measured BRDFs: errors of parameters, MERL files, and refused inputs."""
+"""Fits of measured BRDFs: errors of the fitted parameters, MERL files, and refused inputs."""
 
 import re
 import runpy
@@ -24,13 +24,13 @@ CLAY = {"color": np.array([0.7, 0.35, 0.12]), "roughness": 0.62}
 COATED = CLAY | {"alpha": 0.3, "ior": 1.5}
 PAGE_COAT = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE = 0.05
-# Each of 24 fits has 4 or 6 normal deviates, one of which exceeds 4.5 once in 1200 runs. The spread
-# of 96 deviates is off by more than 30 % once in 10,000 runs.
+# Each of 24 fits has 4 or 6 normal deviates. In one of 1200 runs, a deviate exceeds 4.5. In one of
+# 10,000 runs, the spread of all 96 deviates is off by more than 30 %.
 LARGEST_DEVIATE, FITS, SPREAD = 4.5, 24, (0.7, 1.3)
 
 
 def noisy(rng, model, parameters, count=200, known=True):
-    """Made-up measurement of a model with normal noise, whose size it includes if `known`."""
+    """Invented measurement with normal noise. If `known`, the data state the size of the noise."""
     wo, wi = directions((2, count), rng, least=0.05)
     value = mxeon.model(model).brdf(wo, wi, **parameters)
     error = NOISE * (value if known else np.full_like(value, 0.2))
@@ -39,7 +39,7 @@ def noisy(rng, model, parameters, count=200, known=True):
 
 
 def deviates(fit, parameters):
-    """Differences of fitted from true parameters, in units of the fit's errors."""
+    """Differences of fitted from true parameters, in units of the errors that the fit reports."""
     found = [(fit.values[name] - parameters[name]) / fit.errors[name] for name in fit.values]
     return np.hstack(found)
 
@@ -60,7 +60,7 @@ def test_the_parameters_of_a_dielectric_over_eon_lie_within_their_errors():
     fit = fit_brdf(data, "dielectric_over_eon")
     assert np.abs(deviates(fit, COATED)).max() < LARGEST_DEVIATE
     assert max(each.max() for each in fit.errors.values()) < 0.1
-    other = fit_brdf(data, "eon")  # EON must not fit these data
+    other = fit_brdf(data, "eon")  # control: EON must not fit data of another model
     assert fit.fits and not other.fits and other.scatter > 2.0
     first = str(other).splitlines()[0]
     assert first.endswith(": the model does not fit; its errors assume that it does")
@@ -87,10 +87,10 @@ ONE = MeasuredBrdf(SIDES[:1], SIDES[1:2], np.array([[0.2, 0.1, 0.05]]), np.array
 @pytest.mark.parametrize(
     ("data", "numbers"),
     (
-        (ONE, 0),  # fewer values than parameters
+        (ONE, 0),  # there are fewer values than parameters
         (replace(ONE, error=None), 0),
         (MeasuredBrdf(*(np.repeat(each, 2, 0) for each in (ONE.wo, ONE.wi, ONE.value))), 0),
-        # On a black surface, only the color is determined.
+        # A black surface determines only the color.
         (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),
     ),
 )
@@ -125,7 +125,7 @@ def test_a_file_of_merl_is_read_and_fitted(tmp_path):
 # --- refused inputs --------------------------------------------------------------------------
 
 UP = np.array([[0.0, 0.0, 1.0]])
-# Bad inputs by error message: fields of a measurement, or bytes of a file.
+# Bad inputs, by error message: fields of a measurement, or bytes of a file.
 BAD = {
     "wo, wi must have shape (N, 3); got (3,), (1, 3)": {"wo": UP[0]},
     "value must have shape (1, C); got (3,)": {"value": [0.2, 0.1, 0.05]},
@@ -184,10 +184,12 @@ def test_the_blocks_of_the_page_run_one_after_another(tmp_path, monkeypatch, cap
     found = np.sqrt(np.linalg.inv(J.T @ J).diagonal())
     assert found == pytest.approx([*errors["color"], errors["roughness"]], rel=1e-3)
     albedo = names["eon_albedo_dir"](0.8, fitted["color"], fitted["roughness"])
-    assert weights[0] == pytest.approx(albedo, rel=0.02)  # the standard deviation is 0.4 %
+    # The mean weight has a standard deviation of 0.4 %.
+    assert weights[0] == pytest.approx(albedo, rel=0.02)
     coated = names["coated"]
     assert np.abs(deviates(coated, PAGE_COAT)).max() < LARGEST_DEVIATE and coated.fits
     albedo = names["coat"].albedo_dir(0.8, **coated.values)
-    assert weights[1] == pytest.approx(albedo, rel=0.1)  # the standard deviation is 1.5 %
+    # The mean weight has a standard deviation of 1.5 %.
+    assert weights[1] == pytest.approx(albedo, rel=0.1)
     pictures = ("rendered.png", "coated.png")
     assert all((tmp_path / name).stat().st_size > 1000 for name in pictures)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fitted coefficients have their stated errors; scripts reproduce those of the loss and the angle.
+"""Fitted coefficients have their stated errors, and scripts reproduce fits of the loss and angle.
 
-The scripts compute with 40 digits, so a different digit means a different fit, not a different
-machine.
+The scripts compute with 40 digits. A different digit therefore means a different fit, not a
+different machine.
 """
 
 import re
@@ -205,7 +205,8 @@ def test_the_shader_has_the_nodes_of_a_film():
 
 @pytest.mark.whole
 def test_the_nodes_of_a_film_are_what_their_script_finds():
-    near = {"rtol": 1e-3, "atol": 1e-3}  # least squares differ in the last digits between machines
+    # The last digits of least squares fits depend on the machine.
+    near = {"rtol": 1e-3, "atol": 1e-3}
     np.testing.assert_allclose(thin_film_nodes.hemisphere(), thin_film.NODES, **near)
     np.testing.assert_allclose(thin_film_nodes.facets(), np.ravel(thin_film.FACETS), **near)
 

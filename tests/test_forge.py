@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Workflows of the project on a forge, and the action for other projects."""
+"""Workflows of the project on a forge, and the action that other projects can use."""
 
 import os
 import re
@@ -48,8 +48,8 @@ LINES = "--node oren_nayar_diffuse_bsdf\n--host gl  --workers\n0"
 
 
 def ended(library, folder, options=LINES, command=TOOLS / "mxeon", documents="", baseline=""):
-    """Run the step of the action that checks one node, as a forge runs it."""
-    # The action installs the command in this place.
+    """Run the action's step that checks a node, in the same way as a forge."""
+    # The action installs the command at this path.
     (folder / "mxeon" / "bin").mkdir(parents=True)
     (folder / "mxeon" / "bin" / "mxeon").symlink_to(command)
     # The step `Check` of the action runs this script.

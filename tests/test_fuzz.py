@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A subset of the fuzzer's cases has no fault."""
+"""No case from a sample of the fuzzer's cases has a fault."""
 
 import os
 import subprocess
@@ -13,8 +13,8 @@ from tests.fuzz.cases import COUNTS, cases
 from tests.fuzz.trial import judged
 from tests.support.availability import program
 
-LIMIT = 60.0  # timeout of a case in seconds
-# Numbers of cases per family, each of which may take a second.
+LIMIT = 60.0  # time limit of a case in seconds
+# Number of cases per family. Each case may take a second.
 FEW = dict.fromkeys(COUNTS, 12) | {"found": None, "mutated": 50}
 
 
@@ -29,7 +29,7 @@ def test_a_slice_of_each_family_ends_without_fault(family):
 
 @pytest.fixture(scope="module")
 def strace():
-    """Skip the test if the system does not permit tracing processes."""
+    """Skip the test if the system does not permit a process to trace another process."""
     command = [program("strace"), "-o", os.devnull, sys.executable, "-V"]
     if subprocess.run(command, capture_output=True).returncode:
         pytest.skip("the system lets no process be traced")

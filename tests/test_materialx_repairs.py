@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""With the minimal repairs of MaterialX's data, the checks that show the defects pass."""
+"""With the minimal repairs of MaterialX's data, the checks that reveal the defects pass."""
 
 import json
 import os
@@ -22,7 +22,7 @@ from tools.site import ledger
 
 pytestmark = pytest.mark.whole
 
-# Program that judges rows of the ledger and prints the results.
+# Program that judges rows of the ledger of defects and prints the results.
 JUDGE = """
 import json, sys
 from mxeon.errors import NotRun
@@ -44,15 +44,15 @@ print(json.dumps(results))
 
 ISSUES = issues()
 PATCHES = ledger.patches("materialx")
-# Patches for the main branch: defects that no pull request has repaired.
+# Patches for the main branch, for defects that no pull request has repaired.
 OF_MAIN = [path for page, path in PATCHES.items() if not ISSUES[page].pull]
-# Pages whose patched files are different on the main branch.
+# Pages on defects whose patched files differ on the main branch.
 CHANGED = re.findall(r"^--- a/.*$", MAIN.read_text(), re.MULTILINE)
 ON_MAIN = [page for page in PATCHES if {*CHANGED} & {*PATCHES[page].read_text().splitlines()}]
 
 
 def rows_of(names):
-    """Rows of several pages by host, with other causes that may explain their failures."""
+    """Checks on several pages by host, each with other causes that may explain a failure."""
     return {
         (*row, ISSUES[page].host or "gl"): ISSUES[page].remains.get(row, ())
         for page in names
@@ -68,7 +68,7 @@ def is_one_of(found, causes):
 
 @pytest.fixture(scope="module")
 def failing(tmp_path_factory):
-    """Check, subject and host of each row on stock's pages, which fails or differs unrepaired."""
+    """Check, subject and host of each row on a page that fails or differs without the repair."""
     with available("gl"):
         on_gl = {(e.check, e.subject) for e in every_node(tmp_path_factory, STOCK).results}
     return [
@@ -80,7 +80,7 @@ def failing(tmp_path_factory):
     ]
 
 
-# Libraries for judging rows of pages, if the library is not stock.
+# Libraries for the rows of pages that need a library other than stock MaterialX.
 LIBRARIES = {
     (*row, ISSUES[page].host): ISSUES[page].library for page in PATCHES for row in ISSUES[page].rows
 }
@@ -90,9 +90,9 @@ CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows
 
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory, failing):
-    """Function that returns verdict and diagnosis of each row with a repaired version.
+    """Function that returns verdict and diagnosis of each row, for a repaired version of MaterialX.
 
-    On the main branch, repaired defects must pass without a patch.
+    On the main branch, defects that are already repaired must pass without a patch.
     """
 
     @cache
@@ -113,7 +113,7 @@ def judged(tmp_path_factory, failing):
 
 
 def verdicts(folder, package, files, rows):
-    """Verdict and diagnosis of each row, judged with a patched MaterialX."""
+    """Verdict and diagnosis of each row, with a patched MaterialX."""
     ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
     path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
@@ -126,7 +126,7 @@ def verdicts(folder, package, files, rows):
     "version, row", CASES, ids=lambda each: each if each in ROWS else " ".join(each)
 )
 def test_a_repair_makes_the_checks_pass_that_show_the_defect(judged, version, row):
-    """A check may still fail only if another defect is the cause."""
+    """A check may fail after the repair only if another known defect is the cause."""
     verdict, found, _ = judged(version)[row]
     with available(row[2]):
         if verdict == NOT_RUN:

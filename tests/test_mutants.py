@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of mutants fits the sources, and the intended checks detect a subset of the mutants."""
+"""The table of mutants fits the sources, and intended checks detect a sample of the mutants."""
 
 from contextlib import closing
 from functools import cache
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.whole
 
 TABLE = read_table()
 NAMED = {mutant.name: mutant for mutant in TABLE}
-# Checks that must detect a mutant, by the mutant's name.
+# Names of mutants, and the check that must detect each mutant.
 SLICE = {
     "throughput is 0.01": "throughput",
     "environment behind": "surroundings",
@@ -26,8 +26,8 @@ SLICE = {
     "osl: s negated": "languages",
     "average: c2 1e-3 off": "output",
 }
-SHARE = 0.1  # tested fraction of the mutants made by operators
-# Tasks by check, for tasks that perform several checks.
+SHARE = 0.1  # fraction of the automatically generated mutants that is tested
+# Name of the task for checks that are part of a larger task.
 TASKS = {"languages": SOURCE, "densities": "twins"}
 
 
@@ -53,7 +53,7 @@ def test_every_source_and_every_document_of_implementations_has_mutants():
 
 
 def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_listed(gl):
-    """Listed survivors are the control: a check that always fails would detect them all."""
+    """The listed survivors are the control: a check that always fails would detect them too."""
     tenth = {each.name: each for each in operators.made(1, SHARE) if not each.survives}
     tenth |= {each.name: each for each in operators.made(1, SHARE / 4.0) if each.survives}
     found = schemata.trials(list(tenth.values()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each patch for an upstream repository belongs to a page of docs/upstream and applies."""
+"""Each patch for an upstream repository belongs to a page of docs/upstream, and applies."""
 
 import json
 import re
@@ -23,12 +23,13 @@ MATERIALX = patches("materialx")
 FILES = {page: files for page in ISSUES if (files := patches_of(page))}
 INSTALLED = Path(mx.__file__).parent
 MODULES = packages_folder() / "node_modules"
-HOSTS = {"three.js": "three", "blender": "cycles"}  # hosts that install a project's files
+# Hosts that install the files of an upstream project, by the project.
+HOSTS = {"three.js": "three", "blender": "cycles"}
 
 
 def source(project, name):
     """Installed file that corresponds to a file in a project's repository."""
-    if project == "openpbr":  # MaterialX includes OpenPBR's graph
+    if project == "openpbr":  # MaterialX contains the graph of OpenPBR
         return INSTALLED / "libraries" / "bxdf" / Path(name).name
     if project == "blender":
         return kernel() / name.removeprefix("intern/cycles/kernel/")
@@ -36,7 +37,7 @@ def source(project, name):
 
 
 def repository(folder, project, files):
-    """Create a git repository with a project's installed files, tagged `release`."""
+    """Create a git repository with the installed files of a project, tagged `release`."""
     git(folder, "init", "--quiet")
     for file in files:
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
@@ -64,7 +65,7 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
         except FileNotFoundError as error:
             raise NotRun(f"{project}: {error}") from error
     git(folder, "am", "--quiet", *found.values())
-    # Each index line of a patch has the hash that git gives the patched file.
+    # In a patch, each line "index" has the hash of the patched file, which must exist in git.
     for text in (path.read_bytes().decode() for path in found.values()):
         for name in re.findall(r"^index \w+\.\.(\w{40})", text, re.MULTILINE):
             git(folder, "cat-file", "-e", name)
@@ -72,7 +73,7 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
 
 @pytest.fixture(scope="module")
 def materialx(tmp_path_factory):
-    """Repository with the files of MaterialX that patches change, tagged `release` and `main`."""
+    """Repository with the MaterialX files that patches change, tagged `release` and `main`."""
     files = changed(*MATERIALX.values(), MAIN)
     folder = repository(tmp_path_factory.mktemp("repository"), "materialx", files)
     git(folder, "apply", "--index", MAIN)
@@ -92,7 +93,7 @@ def applied(folder, tag, *pages):
 
 
 def test_main_is_upstreams(materialx):
-    """Files of the tag `main` have the hashes of MaterialX's main branch."""
+    """The files at the tag `main` have the same hashes as on MaterialX's main branch."""
     names = re.findall(r"^index \w+\.\.(\w{40})", MAIN.read_text(), re.MULTILINE)
     listed = git(materialx, "ls-tree", "-r", "main")
     assert [name for name in names if name not in listed] == []
@@ -104,7 +105,7 @@ def test_all_patches_but_those_that_main_has_apply_to_it(materialx):
 
 @pytest.mark.parametrize("page", MATERIALX)
 def test_a_patch_applies_alone(materialx, page):
-    """Each patch applies to the release, and to main unless main has repaired the defect."""
+    """Each patch applies to the release, and to main if the defect still exists there."""
     for tag in ("release", "main")[: 1 if ISSUES[page].pull else 2]:
         applied(materialx, tag, page)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All defects in the ledger of upstream defects still exist, with their measured sizes."""
+"""All defects in the ledger of upstream defects still exist, with the sizes that were measured."""
 
 import json
 from functools import cache, partial
@@ -17,7 +17,7 @@ from tests.support.verdicts import SOURCE
 from tools.site.ledger import FOLDER, measure, measured, patches, with_patches
 
 MEASURED = measured()
-OF_A_DRIVER = "genglsl_albedo_acos"  # depends on the driver
+OF_A_DRIVER = "genglsl_albedo_acos"  # the size of this defect depends on the graphics driver
 # tests/hosts/test_browser.py measures the defects of three.js and Babylon.js.
 ISSUES = [each for each in measure.CHECKED if each.host not in ("three", "babylon")]
 
@@ -28,11 +28,11 @@ def test_a_page_with_a_patch_says_what_it_changes():
 
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory):
-    """Function that returns results and place of a host's defects, shared by all processes."""
+    """Function that returns the results for a host's defects, and where they were measured."""
 
     @cache
     def outcome(host, library):
-        """Results and place, or the reason why the host did not run."""
+        """Results and the place of the measurement, or the reason why the host did not run."""
         if host in ("gl", SOURCE) and library == STOCK:
             run = every_node(tmp_path_factory, "stock")
             place = f"{run.hosts[0].device}, {run.hosts[0].version}, MaterialX {mx.__version__}"
@@ -74,14 +74,14 @@ def test_every_failure_of_stock_on_gl_has_a_page_that_explains_its_size(judged):
 
 
 def same_record(found, written):
-    """Assert that measurements match those of a page up to the printed digits."""
+    """Assert that measurements match the measurements on a page up to the printed digits."""
     figures, others = zip(*map(_parted, (found, written)), strict=True)
     np.testing.assert_allclose(*figures, rtol=PRINTED)
     assert others[0] == others[1]
 
 
 def _parted(record):
-    """Split a record into its figures, and the rest without the place."""
+    """Split a record into figures and other fields, without the place of the measurement."""
     rows = [[check, subject, *rest] for check, subject, _, *rest in record["rows"]]
     return [float(row[2]) for row in record["rows"]], (rows, record["cause"], record.get("next"))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The wheel and the sdist have the right contents and work outside the checkout."""
+"""The wheel and the sdist have the right contents, and work outside the checkout."""
 
 import os
 import sys
@@ -23,7 +23,7 @@ DATA = {
     "genglsl": "eonlib/genglsl",
     "genosl": "eonlib/genosl",
     "examples": "examples",
-}  # paths in the wheel, by folder of the checkout
+}  # folders of the checkout, and paths of their files in the wheel
 SUFFIXES = (".mtlx", ".glsl", ".osl", ".xml", ".png")
 SCRIPT = Path(mx.__file__).parent / "_scripts" / "generateshader.py"
 
@@ -43,7 +43,7 @@ for path in sorted(examples_folder().glob("*.mtlx")):
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
-    """Folder with the built sdist, and the wheel built from the sdist."""
+    """Folder with the sdist, and with the wheel that was built from the sdist."""
     folder = tmp_path_factory.mktemp("dist")
     build = [sys.executable, "-m", "build", "--no-isolation", "--outdir", folder, CHECKOUT]
     output(*build, cwd=folder)
@@ -58,7 +58,7 @@ def wheel(built):
 
 @pytest.fixture(scope="module")
 def environment(wheel, tmp_path_factory):
-    """New virtual environment with the wheel, which uses the dependencies installed here."""
+    """New virtual environment with the wheel. The wheel uses the dependencies installed here."""
     folder = tmp_path_factory.mktemp("fresh")
     run([sys.executable, "-m", "venv", "--without-pip", folder], folder)
     python = folder / "bin" / "python"
@@ -70,7 +70,7 @@ def environment(wheel, tmp_path_factory):
 
 
 def run(command, folder):
-    """Run a command in a folder, without the checkout on Python's path, and return its output."""
+    """Run a command without the checkout on Python's path, and return the command's output."""
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     return output(*command, cwd=folder, env=clean)
 
@@ -80,7 +80,7 @@ def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_e
         names = set(archive.namelist())
     parts = {part for name in names for part in name.split("/")}
     assert not parts & {"tests", "__pycache__"}
-    # Elsewhere in the wheel, a folder named `libraries` would hide MaterialX's.
+    # Other folders with the name `libraries` would hide MaterialX's folder of that name.
     libraries = {name.split("/libraries/")[0] for name in names if "/libraries/" in name}
     assert libraries == {"mxeon/data/eonlib/genglsl/environment"}
     assert {name.split("/")[0] for name in names} == {

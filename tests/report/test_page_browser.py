@@ -35,7 +35,7 @@ def browser():
 
 @contextmanager
 def opened(browser, address, **options):
-    """Context with the report page; network requests and console messages fail the test."""
+    """Context with the report page. Network requests and console messages fail the test."""
     page = browser.new_page(**options)
     with watched(page, address):
         yield page
@@ -53,7 +53,7 @@ def test_a_cell_of_the_matrix_leads_to_its_evidence(browser, address):
         target = cell.get_attribute("href")
         cell.click()
         page.wait_for_selector(f"details{target}[open]")
-        assert page.locator(f"{target} > summary").is_visible()  # the click unfolds it
+        assert page.locator(f"{target} > summary").is_visible()  # the click unfolds the details
 
 
 def test_a_failure_leads_to_the_page_on_its_defect(browser, address):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports lose no result, escape all texts, and are written completely."""
+"""Reports lose no result, escape all text, and are written completely."""
 
 import json
 import math
@@ -207,7 +207,7 @@ def test_a_sentence_says_how_a_material_looks(run, result, picture, words):
     one = replace(run, results=(judged,), pictures=(shown,))
     text = page_of(one)
     assert words in Page(text).text
-    # A visible difference is marked "within the tolerance" instead of by a check mark.
+    # The page marks a visible difference as "within the tolerance", without a check mark.
     assert ('aria-label="within the tolerance"' in text) == (
         words.startswith("up to") and not result
     )
@@ -225,7 +225,7 @@ def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(r
     text = Page(page_of(shown)).text
     places = ("Light from behind, gl", "≥ 1.3 % of white", "Light from the side, gl")
     assert sorted(places, key=text.index) == [*places]
-    assert text.count("1 passed") == 2  # once in the header, once in the check's row
+    assert text.count("1 passed") == 2  # the header and the row of the check contain this text
 
 
 def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(run):
@@ -249,7 +249,7 @@ def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(r
         page = Page(page_of(replace(shown, contents=contents)))
         assert [each for each in page.values("id") if each in order] == order
     title = "EON in GLSL is wrong for light from behind"
-    assert page.text.count(title) == 3  # once as a cause, and once per check
+    assert page.text.count(title) == 3  # once as a cause, and once for each check
     node = FAILURE.subject.partition(",")[0]
     assert f"Checks {title} {node} 2 best match: QON {node} 1 " in page.text
     alts = page.values("alt")
@@ -269,7 +269,8 @@ def test_the_examples_of_the_page_on_checking_run(tmp_path, monkeypatch):
 
 
 def test_json_is_strict_and_has_the_documented_keys(run):
-    data = json.loads(to_json(run), parse_constant=pytest.fail)  # NaN and infinity are not JSON
+    # JSON does not allow NaN and infinity.
+    data = json.loads(to_json(run), parse_constant=pytest.fail)
     documented = re.findall(r"(?:- |; )([$\w]+):", to_json.__doc__.split("Keys:")[1])
     assert set(data) == set(documented)
     assert data["results"][1]["error"] == "Infinity"

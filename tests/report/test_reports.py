@@ -33,7 +33,7 @@ PLACE = "gl, eonlib, value, clay"
 def made_run(
     verdict=PASSED, error=1e-7, device="llvmpipe", difference=1e-7, subject="clay", **fields
 ):
-    """Made-up run with one result, which has the given fields."""
+    """Invented run whose only result has the given fields."""
     pixels = np.zeros((4, 4, 3))
     picture = Picture("d", "clay", "gl", "eonlib", "side", pixels + difference, pixels, {})
     result = Result("value", "claim", subject, "gl", "eonlib", verdict, error, tolerance=1e-6)
@@ -88,7 +88,7 @@ CHANGES = [
     (GONE, made_run(FAILED), (WORSE, "1 check: none -> failed at 1e-07")),
     (made_run(), REFUSED, (WORSE, "clay.mtlx: not refused -> refused")),
     (REFUSED, made_run(), (BETTER, "clay.mtlx: refused -> not refused")),
-    # A removed document accounts for a missing check; a moved document does not.
+    # A removed document explains missing checks. A moved document must not lose checks.
     (
         TWO,
         replace(GONE, documents=TWO.documents[:1]),
@@ -117,7 +117,7 @@ ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
 def errors(*regions, samples="a", **changes):
-    """Fields with errors of all samples and of regions, which are ALL with the given changes."""
+    """Error fields of a result: ALL with the given changes, for all samples and for each region."""
     whole, *parts = ({**changes}, *regions)
     found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
     return {"errors": found, "samples": samples}
@@ -127,11 +127,11 @@ ROUGH, SMOOTH = (Region("roughness", "value", **end) for end in ({"low": 0.5}, {
 HALVES = {"region": SMOOTH}, {"region": ROUGH}
 PAGE, TWO_PAGES = {"pages": ("a",)}, {"pages": ("a", "b")}
 PERMITTED = {"verdict": DIFFERS}
-SEED = {"samples": "b", "of": 900}  # different and fewer samples
+SEED = {"samples": "b", "of": 900}  # fewer samples, drawn with another seed
 INVALID = {"error": math.inf, "tolerance": 0.0, "quantity": Quantity.VALUES}
 # Result before, result after, kind of the change, and part of the printed line.
 GATE = {
-    # Regressions that do not change the largest error.
+    # Regressions that leave the largest error unchanged.
     "light is lost below half of the layers": (errors(), errors(wrong=200, rms=0.1), WORSE, "10 % -> 20 % of"),
     "a page explains it no longer": (errors() | PAGE, errors(), WORSE, "a no longer explains it"),
     "the best match is far, although the page stays": (
@@ -177,7 +177,7 @@ GATE = {
     ),
     "a page is found": (errors(), errors() | PAGE, BETTER, "a explains it"),
     "smaller": ({"error": 0.9}, {}, BETTER, "3 times smaller"),
-    # Changes within the noise of samples.
+    # Changes within the noise of the samples.
     "the same": (errors(*HALVES), errors(*HALVES), "", ""),
     "another driver": (errors(), errors(rms=0.0505, largest=0.4, wrong=101), "", ""),
     "another seed": (
@@ -190,7 +190,7 @@ GATE = {
     ),
     "another name of the same error": (errors() | {"diagnosis": QON}, errors() | {"diagnosis": FON}, "", ""),
     "other edges that are not finite": (INVALID | {"error": 376.0}, INVALID | {"error": 380.0}, "", ""),
-    # Checks that did not run before or after.
+    # Checks that did not run, either before or after.
     "lost": ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
     "found": ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
     "implied": ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
@@ -217,8 +217,8 @@ def test_the_rules_tell_a_regression_from_noise_and_from_a_repair(row, tmp_path,
 SCHLICK = "generalized_schlick_bsdf"
 ROUGH_NODE = "oren_nayar_diffuse_bsdf, energy_compensation true"
 LIGHT = "bsdf.response = diffuse *"
-# Regressions of MaterialX's GLSL: check, title of the node, file, text and replacement. Most do not
-# change the largest error.
+# Regressions of MaterialX's GLSL: check, node title, file, original text and replacement. Most of
+# the regressions leave the largest error unchanged.
 PLANTED = {
     "a fifth of the light lost below half of the layers": (
         "layering", f"{SCHLICK}, scatter_mode R", SCHLICK, "= vec3(1.0 - avgDirAlbedo * weight);",
@@ -252,7 +252,8 @@ PLANTED = {
 }  # fmt: skip
 
 
-# Where stock is too bright, undoing these regressions raises the errors of some samples.
+# Stock MaterialX is too bright in some samples, which these regressions darken. Undoing a
+# regression therefore raises the errors of these samples.
 HIDING = ("transmission tinted by color0", "dark hair for some", "another range of blackbodies")
 
 
@@ -293,7 +294,8 @@ def test_a_check_with_a_baseline_is_one_command(tmp_path, capsys):
     document = str(examples_folder() / "clay.mtlx")
     check = ["check", document, "--host", "msl", "--library", "eonlib", "--workers", "0"]
     out, old = str(tmp_path / "out"), tmp_path / "old"
-    assert main([*check, "--report", out, "--annotations"]) == 3  # msl is generated but not run
+    # Shaders for msl are generated but not run.
+    assert main([*check, "--report", out, "--annotations"]) == 3
     assert "\n::warning title=mxeon check::not run" in capsys.readouterr().out
     passed = {"verdict": PASSED, "error": 0.0, "tolerance": 1.0, "reason": ""}
     for name, change, status, text in (
@@ -352,12 +354,12 @@ def test_what_is_no_report_is_one_line(tmp_path, capsys, text, words):
     assert words in capsys.readouterr().err
 
 
-# The reader's messages for rules that the schema cannot express.
+# Error messages for rules that the JSON schema cannot express.
 TOGETHER = re.compile("counts must be |must have a tolerance|must be at least 0|inhomogeneous")
 
 
 def replacements(value, replace_it):
-    """Copies of a JSON value, each with an inner value replaced, or with a key removed or added."""
+    """Copies of a JSON value in which an inner value is replaced, or a key removed or added."""
     for other in (None, True, 7.5, "text", [[]], [True], {"more": [[]]}):
         yield replace_it(other)
     is_list = isinstance(value, list)
@@ -402,7 +404,7 @@ def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, mon
 
 
 def refusal_of(folder, capsys):
-    """Assert that `report diff` refuses a report in one line, and return the message."""
+    """Assert that `report diff` refuses a report with one line, and return the message."""
     assert main(["report", "diff", str(folder), str(folder)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and error.startswith("mxeon: ")
@@ -437,7 +439,7 @@ def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
 
 
 def run_with(*folders, verdict=PASSED):
-    """Made-up run with folders as libraries; `verdict` is that of the last library."""
+    """Invented run with folders as libraries; `verdict` is the verdict on the last folder."""
     runs = [made_run(library=folder) for folder in folders[:-1]]
     runs.append(made_run(verdict, library=folders[-1]))
     libraries = {folder: {"folder": ("a.mtlx",)} for folder in folders}
@@ -449,8 +451,9 @@ def run_with(*folders, verdict=PASSED):
     "before, after",
     [
         (["/old/eonlib"], ["/new/eonlib"]),
-        (["/old/a", "/old/b"], ["/new/b", "/new/a"]),  # libraries match by name in any order
-        (["/old/a", "/same/b"], ["/new/c", "/same/b"]),  # unmatched names match by position
+        (["/old/a", "/old/b"], ["/new/b", "/new/a"]),  # libraries are matched by name, in any order
+        # Libraries with unmatched names are matched by position.
+        (["/old/a", "/same/b"], ["/new/c", "/same/b"]),
     ],
 )
 def test_a_library_that_lies_elsewhere_is_the_same_one(before, after):
@@ -465,7 +468,7 @@ TOLERANCE = 1e-6
 
 
 def made(check, error, **changes):
-    """Made-up result of a check of EON's node on gl."""
+    """Invented result of a check of the EON node on gl."""
     verdict = PASSED if error <= TOLERANCE else FAILED
     result = Result(
         check, "claim.", EON, "gl", "stock", verdict, error, Quantity.DIFFERENCE, TOLERANCE,
@@ -480,14 +483,14 @@ WRONG = (
     made("furnace", 1e-7),
     made("integral", 0.3, pages=("a", "b")),
     made("black", 0.0),
-    # Results of other nodes say nothing about rough diffuse models.
+    # Results of other nodes reveal nothing about a rough diffuse model.
     made("value", 0.4, subject="sheen_bsdf, mode zeltner"),
 )
 RUN = Run("0.1.0", {}, (Identity("gl", "OpenGL 4.5", "llvmpipe"),), WRONG)
 
 
 def written(folder, **changes):
-    """Write the report of RUN with changed fields, and return the row of its node."""
+    """Write the report of RUN with changed fields; return the summary of its only node."""
     write(replace(RUN, **changes), folder)
     (entry,) = read_field([folder])
     return entry
@@ -505,7 +508,7 @@ def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_p
 
 
 def test_a_node_whose_renderer_did_not_run_has_the_claim_of_this_renderer(tmp_path):
-    """EEVEE's node of the same title claims Lambert."""
+    """EEVEE has a node with the same title that claims to be Lambert."""
     place = {"host": "cycles-native", "subject": "Diffuse BSDF", "claimed": ""}
     stopped = replace(WRONG[0], **place, verdict=NOT_RUN, error=None, tolerance=None, control=None)
     assert written(tmp_path, results=(stopped,)).claimed == TITLE

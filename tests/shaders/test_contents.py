@@ -21,7 +21,7 @@ GRAPH = """<nodegraph name="graph">
 
 @pytest.fixture(autouse=True)
 def nothing_else(monkeypatch):
-    """Restrict runs to reading documents, without checks of nodes."""
+    """Restrict runs to reading documents; no node is checked."""
     keep_checks(monkeypatch, "host")
 
 

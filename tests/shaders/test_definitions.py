@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Definitions of a studio's own nodes are loaded in addition to the library."""
+"""mxeon loads the definitions of a studio's own nodes in addition to the library."""
 
 import OpenImageIO as oiio
 import pytest
@@ -17,7 +17,7 @@ CLOTH = material('<studio_rough name="lobe" type="BSDF"/>')
 
 @pytest.fixture
 def given(tmp_path):
-    """Folder of a studio's definitions, and the path of a document that uses them."""
+    """Folder of a studio's node definitions, and path of a document that uses the nodes."""
     return studio(tmp_path), written(tmp_path, CLOTH)
 
 
@@ -25,7 +25,7 @@ def test_a_document_with_nodes_of_a_studio_has_eonlibs_lobes(given):
     folder, document = given
     (shader,) = generate(document, "glsl", policy=Policy(definitions=(str(folder),)))
     assert "studio_fade" in shader.stages["pixel"]
-    assert "eon_brdf" in shader.stages["pixel"]  # eonlib's own function
+    assert "eon_brdf" in shader.stages["pixel"]  # a function of eonlib
 
 
 def test_definitions_need_no_permission_of_the_document(given, tmp_path, capsys):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents in UTF-8 are read; others are refused in one line with place, rule and value."""
+"""Documents in UTF-8 are read. Others are refused in one line with place, rule and value."""
 
 import re
 
@@ -22,7 +22,7 @@ CYCLE = (
 )
 A, DEEP = '<a name="lobe" type="BSDF"/>', material("<a>" * 1000 + "</a>" * 1000)
 
-# Invalid files: contents, and the error message.
+# Contents of invalid files, and part of the error message.
 FILES = {
     "empty": ("", "must be a MaterialX document; XML parse error"),
     "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
@@ -39,7 +39,7 @@ FILES = {
     ),
 }
 
-# Malformed input values, and the error message.
+# Malformed input values, and part of the error message.
 VALUES = (
     ({"color": "nan, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got n'),
     ({"color": "red"}, 'input "lobe/color" must be a valid color3 of finite numbers; got red'),
@@ -48,7 +48,7 @@ VALUES = (
     ({"energy_compensation": "x"}, 'Invalid value: <input name="energy_compensation"'),
 )
 
-# Input values that MaterialX accepts but the model does not cover, and the message.
+# Input values that MaterialX accepts although the model is undefined there, and the message.
 MODEL = "where its model is defined; got"
 OUTSIDE = (
     ({"color": "0.5, -0.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, -0.1, 0.5'),
@@ -65,14 +65,14 @@ OUTSIDE = (
     ),
 )
 
-# Malformed texts of a float, and the value that MaterialX reads from them.
+# Malformed texts of a number, and the number that MaterialX reads from each text.
 READ = {"0.5f": 0.5, "0x10": 0, "1d5": 1, "1/2": 1, "50%": 50, "0.5;0.5": 0.5, "0.5.0": 0.5}
 READ |= {"1.#INF": 1, "1_0": 1, "0.5, 0.6": 0.5, "1e5f": 100000, "0 5": 0}
 CONSTANT = (
     '<constant name="c" type="float"><input name="value" type="float" value="{}"/></constant>'
 )
 
-# Invalid nodes, and the error message.
+# Invalid nodes, and part of the error message.
 NODES = {
     "unknown node": (
         '<nosuch_bsdf name="lobe" type="BSDF"/>',
@@ -135,7 +135,7 @@ def test_bad_nodes_are_refused_with_their_names(nodes, rule):
 
 
 def warned(text, **options):
-    """Warnings issued while shaders are generated for a document."""
+    """The only warning that is issued while the shaders of a document are generated."""
     with pytest.warns(DocumentWarning) as caught:
         assert generate(text, "glsl", **options)
     [message] = [str(each.message) for each in caught]

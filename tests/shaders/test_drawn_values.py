@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents made to render values leave the shared data library unchanged."""
+"""Documents that mxeon makes to render values leave MaterialX's shared data library unchanged."""
 
 import MaterialX as mx
 import pytest
@@ -7,7 +7,7 @@ import pytest
 from mxeon.shaders.document.drawn_values import emission_document, value_document
 from mxeon.shaders.library import load_library
 
-COLORED = "NG_disney_principled"  # a library nodegraph with a color space
+COLORED = "NG_disney_principled"  # nodegraph of the library that has a color space
 
 
 @pytest.mark.parametrize("make", [value_document, emission_document])

@@ -46,13 +46,13 @@ of_each_example = pytest.mark.parametrize("path", EXAMPLES)
 
 
 def pixel(text, target, **options):
-    """Pixel stage of a document that has a single material."""
+    """Source of the pixel stage of a document that has a single material."""
     [shader] = generate(text, target, **options)
     return shader.stages["pixel"]
 
 
 def kept(source):
-    """Global variables of a shader that are not constant; in MSL, members of its context."""
+    """Variables at global scope that are not constant; in MSL, members of the context struct."""
     ignored = r"//.*|/\*[\s\S]*?\*/|^ *#.*(\\\n.*)*|struct GlobalContext\s*{"
     text = re.sub(ignored, "", source, flags=re.MULTILINE)
     while "{" in text and (bare := re.sub(r"{[^{}]*}", ";", text)) != text:
@@ -75,7 +75,7 @@ def validate(shader, target, folder):
 
 
 def every_lobe():
-    """Material that sums all BSDF nodes of pbrlib and eonlib's EON node, and the nodes' names."""
+    """Material that adds all BSDF nodes of pbrlib and the EON node, and names of the nodes."""
     stock = load_library("stock").getNodeDefs()
     names = sorted({each.getNodeString() for each in stock if each.getAttribute("bsdf")} | {EON})
     nodes, total = "", ""
@@ -112,7 +112,7 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
 
 
 def translated(source, language, folder):
-    """Errors of spirv-cross for a pixel stage, or of glslang for the resulting HLSL; "" if none."""
+    """Errors when spirv-cross translates a pixel stage or glslang compiles the HLSL; "" if none."""
     compiler, translator = program("glslangValidator"), program("spirv-cross")
     glsl, module, text = (folder / f"pixel.{suffix}" for suffix in ("frag", "spv", language))
     glsl.write_text(source, encoding="utf-8")
@@ -137,7 +137,7 @@ def translated(source, language, folder):
 def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
     source = pixel(spec.within("eonlib").document(), "vulkan", lights=True)
     assert translated(source, language, tmp_path) == ""
-    if spec.title == "gltf_pbr" and language == "hlsl":  # control: HLSL lacks asinh
+    if spec.title == "gltf_pbr" and language == "hlsl":  # control: HLSL has no asinh
         wrong = source.replace("step(vec2(0.0), v)", "asinh(v)")
         assert wrong != source and "not supported on HLSL" in translated(wrong, language, tmp_path)
 
@@ -145,13 +145,13 @@ def test_every_node_and_surface_translates_from_spirv(spec, language, tmp_path):
 @pytest.mark.parametrize("path", SOURCES)
 def test_a_source_keeps_no_state(path):
     text = path.read_text(encoding="utf-8")
-    if path.stem == "head":  # state is permitted here
+    if path.stem == "head":  # only this file may keep state
         text = re.sub(r"^\w+ path_\w+;.*$", "", text, flags=re.MULTILINE)
     assert kept(text) == set() and not re.search(r"\bstatic\b", text)
     assert kept(text + "vec3 last = vec3(0.0);\nfloat value;") == {"vec3 last", "float value"}
 
 
-# Patterns of wrong code by title. Some engines hide the errors, so the text is searched.
+# Patterns of wrong code, by title, searched in the source because some engines hide errors.
 WRONG = {
     "a derivative after a return, which some pixels have taken": r"(?s)\breturn;(?:(?!\n}).)*\b(?:fwidth|dFd[xy])\(",
     "the half vector of opposite directions": r"normalize\(w[io] \+ w[io]\)",
@@ -165,28 +165,29 @@ def test_no_source_has(wrong):
     assert [name for name, text in texts.items() if re.search(wrong, text)] == []
 
 
-# Names of functions, structures, macros and global variables in a text.
+# Names of functions, structures, macros and global variables in a source.
 NAMES = r"(?m)^(?:closure )?(?:#define |struct |\w+ (?=\w+(?:\(|;|\[|$)))(\w+)"
 
 
 def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
-    """MaterialX names the variables of inputs and outputs `node_input` and `node_output`."""
+    """MaterialX names the variables of a node's inputs and outputs `node_input`, `node_output`."""
     ports = {
         f"_{port.getName()}"
         for nodedef in load_library().getNodeDefs()
         for port in (*nodedef.getActiveInputs(), *nodedef.getActiveOutputs())
-        # Inputs of these types become no variables.
+        # MaterialX makes no variables for inputs of these types.
         if port.getType() not in ("BSDF", "EDF", "VDF") or "out" in port.getName()
     }
     texts = [path.read_text(encoding="utf-8") for path in (*SOURCES, *OSL_SOURCES)]
-    texts.append("vec3 thin_film_weight(float r)\n{\n}\nstruct hair_scale\n{")  # control
+    # This text is a control with two forbidden names.
+    texts.append("vec3 thin_film_weight(float r)\n{\n}\nstruct hair_scale\n{")
     names = [name for text in texts for name in re.findall(NAMES, text)]
     found = [name for name in names if name.endswith((*ports,))]
     assert found == ["thin_film_weight", "hair_scale"]
 
 
-# Patterns of code that is invalid in Metal, by example: structures are not functions, and array
-# parameters need an address space.
+# Patterns of code that is invalid in Metal, each with an example: structures have no constructor
+# functions, and array parameters need an address space.
 NOT_METAL = {
     "ThinFilmComplex(re, im)": r"\b(?!GlobalContext)({})\(",
     "void f(float a, vec3 A[4])": r"[(,]\s*(?!(?:const )?(?:thread|device|constant) )(?:const )?\w+ \w+\[\d*\]\s*[,)]",
@@ -258,7 +259,7 @@ def test_lines_with_the_words_are_left_out_of_what_libraries_print(capfd):
     with without_lines("of no use"):
         os.write(ERROR, b"this is of no use\nthis is\n")
     assert capfd.readouterr().err == "this is\n"
-    generate(material(lobe()), "wgsl")  # the flag is a boolean in WGSL
+    generate(material(lobe()), "wgsl")  # MaterialX prints a line about boolean inputs in WGSL
     assert capfd.readouterr().err == ""
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hostile documents are refused in one line that gives a remedy."""
+"""Hostile documents are refused with one line that names a remedy."""
 
 import warnings
 from dataclasses import replace
@@ -34,7 +34,7 @@ FETCH = BOMB.replace('"ha"', 'SYSTEM "../secret.mtlx"')
 
 @pytest.fixture
 def home(tmp_path):
-    """Folder for a document, with a link that leads out of it, and files outside."""
+    """Folder for a document. A link in the folder leads outside, where more files lie."""
     folder = tmp_path / "documents"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)
@@ -117,7 +117,7 @@ LIMITED = (
     ("ports", SMALL, 5 + 4 + 3),
     ("nodes", ROW, 11),
     ("chain", ROW, 11),
-    ("depth", material(doubled(4)), 6),  # includes the graph of eon_diffuse_bsdf
+    ("depth", material(doubled(4)), 6),  # the count includes the graph of eon_diffuse_bsdf
 )
 
 

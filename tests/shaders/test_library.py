@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MaterialX finds eonlib's implementations for every load order, mode and client."""
+"""MaterialX finds eonlib's implementations in every load order, mode and client."""
 
 import re
 import subprocess
@@ -31,7 +31,7 @@ BOTH = (
     '<input name="in2" type="BSDF" nodename="second"/></add>'
 )
 
-# Text by which each target's shader calls the functions of two nodes.
+# Function calls of two nodes in the generated shaders, by target.
 CALLS = {
     "glsl": ("oren_nayar_diffuse_bsdf(closureData, ", "eon_diffuse_bsdf(closureData, "),
     "osl": ('"energy_compensation", first_energy_compensation)', '"energy_compensation", 1)'),
@@ -61,7 +61,7 @@ def loaded(folders):
 
 
 def listed(folders):
-    """Pairs of nodedef and target that the folders implement, read as XML."""
+    """Pairs of nodedef and target that the folders implement, read from their XML."""
     files = [path for each in folders for path in each.rglob("*.[mx]*l*")]
     elements = [each for file in files for each in ElementTree.parse(file).getroot()]
     return {
@@ -133,11 +133,11 @@ def test_eons_graph_serves_only_the_targets_without_an_implementation_of_their_o
     ],
 )
 def test_eons_graph_is_eon_and_the_checks_notice_each_change_of_it(old, new, noticed, tmp_path):
-    """Without an implementation in GLSL, the checks run EON's graph, in which `old` is replaced."""
+    """EON's GLSL is removed, so the checks run EON's graph, in which `old` is replaced."""
     copy = copy_of_eonlib(tmp_path)
     replace_text(copy, ' nodedef="ND_eon_diffuse_bsdf"', "", "diffuse/eonlib_genglsl_impl.mtlx")
     graph = copy / "diffuse" / "eonlib_ng.mtlx"
-    graph.write_text(graph.read_text().replace(old, new, 1))  # EON's graph comes first
+    graph.write_text(graph.read_text().replace(old, new, 1))  # EON's graph comes first in the file
     judge = Verdicts()
     keys = ("inputs", "value", "environment")
     verdicts = {key: judge(key, EON, library=str(copy)).verdict for key in keys}
@@ -176,7 +176,7 @@ def test_generateshader_takes_the_profile_before_the_library(tmp_path):
 
 
 def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
-    with available("cycles"):  # Blender includes a USD with MaterialX
+    with available("cycles"):  # Blender contains a USD with MaterialX
         python = interpreter()
     monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
     done = subprocess.run([python, "-c", USD, *NODEDEFS], capture_output=True, text=True)

@@ -31,7 +31,7 @@ def contents(folder):
 def test_a_copy_is_eonlib_with_its_license_and_recipes(copy):
     found, whole = contents(copy), {}
     for name in ("libraries", *SOURCE_FOLDERS):
-        # A folder named `libraries` would hide MaterialX's.
+        # A folder with the name `libraries` would hide MaterialX's folder of that name.
         inside = name.replace("libraries", "documents")
         files = contents(data_folder() / name)
         whole |= {f"{inside}/{file}": data for file, data in files.items()}
@@ -60,7 +60,8 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
     output(program("glslangValidator"), *shaders)
 
 
-# GLSL of these versions adds a medium's transmission to that of the layer above.
+# GLSL of these versions adds the transmission of a medium to the transmission of the layer above
+# the medium.
 MEDIA = dict.fromkeys(TESTED[:-1], "transmittance, ")
 
 

@@ -24,7 +24,7 @@ PARTS = {"pbrlib": ["pbrlib"], "a node and its lib": BURLEY, "a file of lib": BU
 
 @pytest.fixture(autouse=True)
 def few_programs(monkeypatch):
-    """Leave out checks that compile additional programs."""
+    """Omit the checks that compile additional programs."""
     keep(monkeypatch, lambda task: task.check not in (*DRAWN, "states"))
 
 
@@ -61,8 +61,8 @@ def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
     assert tree(str(copy)).kind == OVERLAY
 
 
-# Faults in a copy: file, text, replacement, node, the check that is reported first, and words of
-# the message.
+# Faults in a copy: the file, the original text, its replacement, the node, the check that is
+# reported first, and words of the message.
 FAULTS = {
     "a file of lib": (LIB, "D = mx_", "D = 3.0 * mx_", "sheen_bsdf", "value", "3 times the right"),
     "an implementation": (

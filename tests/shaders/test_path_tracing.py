@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader text for path tracers: values match the rasterizer, and densities match the samples.
+"""Shaders for path tracers: values match the rasterizer, and densities match the samples.
 
-`mxeon check` judges every node by the checks `pdf`, `sample`, `path_value` and `path_inside`.
-These tests use more samples, and cover edge cases and surface shaders.
+`mxeon check` judges every node by the checks `pdf`, `sample`, `path_value` and `path_inside`. These
+tests use more samples, and cover edge cases and surface shaders.
 """
 
 import shutil
@@ -23,13 +23,13 @@ from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
 from tools.benchmarks import glass
 
-DEVIATION = 5.0  # standard deviations; exceeded by chance once in 3.5 million tests
+DEVIATION = 5.0  # standard deviations, exceeded by chance once in 3.5 million tests
 COLOR = {"color": (0.8, 0.4, 0.2)}
 ROUGH, DARK = {"roughness": (0.5, 0.3)}, (0.1, 0.05, 0.02)
 FIBER = {"roughness_R": (0.3, 0.4), "roughness_TT": (0.1, 0.3), "roughness_TRT": (0.5, 0.6)}
 FIBER |= {"cuticle_angle": 0.7, "absorption_coefficient": (0.1, 0.3, 0.5)}
-# A node of every kind, including films, retroreflection and an index below 1, which `mxeon check`
-# does not sample.
+# Nodes of every kind, including films, retroreflection and an index of refraction below 1, for
+# which `mxeon check` does not test samples.
 NODES = {
     "diffuse": ("oren_nayar_diffuse_bsdf", COLOR | {"roughness": 0.7, "energy_compensation": True}),
     "zeltner": ("sheen_bsdf", COLOR | {"roughness": 0.4, "mode": "zeltner"}),
@@ -74,7 +74,7 @@ SURFACES = {
 DOCUMENTS = {name: material_text(*row) for name, row in NODES.items()}
 DOCUMENTS |= {name: surface(name, **inputs) for name, inputs in SURFACES.items()}
 view = partial(direction, phi=0.3)
-# Drivers take seconds to compile a surface shader.
+# Graphics drivers take seconds to compile a surface shader.
 SURFACE_NAMES = [pytest.param(name, marks=pytest.mark.whole) for name in SURFACES]
 every_document = pytest.mark.parametrize("name", [*NODES, *SURFACE_NAMES])
 
@@ -90,7 +90,7 @@ def directions(rng, count):
 
 @pytest.fixture(scope="module")
 def materials(gl):
-    """Function that compiles a document's material by name, once."""
+    """Function that compiles the material of a document by name, once."""
     known = {}
     return lambda name: known.setdefault(name, paths(gl, DOCUMENTS[name]))
 
@@ -100,7 +100,7 @@ def materials(gl):
 def test_draws_have_their_density(materials, name, mu, count):
     material, wo = materials(name), view(mu)
     drawn = material.values("wi", wo, u=uniforms(count))
-    # Light that passes straight through has no density, so it is left out.
+    # Light that passes straight through has no density, so such samples are left out.
     if material.values("opacity", wo)[0, 0] < 1.0:
         drawn = drawn * (np.linalg.norm(drawn + wo, axis=1, keepdims=True) >= 1e-6)
     apart = deviation(
@@ -112,8 +112,8 @@ def test_draws_have_their_density(materials, name, mu, count):
     assert apart < DEVIATION
 
 
-# Errors of the rasterizer's albedo, in addition to the noise of 2^16 samples. Films are fitted, and
-# tilted fibers have no closed form.
+# Errors of the rasterizer's albedo, in addition to the noise of 2^16 samples. The albedos of films
+# are fits, and tilted hair fibers have no closed form.
 ALBEDO_ERRORS = {"soap": 0.07, "bubble": 0.05, "steel": 0.08, "hair": 0.2}
 
 
@@ -145,7 +145,7 @@ def test_draws_of_hair_find_the_light_that_tilted_cuticles_fold(gl, angle):
     assert (abs(densities.mean(axis=0) - 1.0) < 5.0 * densities.std(axis=0) / 2.0**9).all()
 
 
-# Random walks through a glass ball: variance over squared mean, and the largest sample weight.
+# Random walks through a glass ball: variance divided by the squared mean, and largest weight.
 VARIANCES = {
     "dielectric_bsdf, 0.1": (0.036, 1.83),
     "dielectric_bsdf, 0.4": (0.21, 1.8),

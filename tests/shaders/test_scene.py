@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Points of the sphere and the shader ball lie under the pixel centers, with their normals."""
+"""Points of the sphere and the shader ball lie under the pixel centers, with correct normals."""
 
 import numpy as np
 import pytest
@@ -12,14 +12,15 @@ def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
     points = shader_ball_at(*pixel_centers(64))
     seen = points.position[points.mask]
     assert np.abs(distance(seen)).max() <= CLOSE
-    # Nothing lies in front of a visible point.
+    # No part of the ball lies in front of a visible point.
     assert (distance(seen + [0.0, 0.0, 0.01]) > 0.0).all()
     outward = seen - CENTER @ OBJECT
     ball = np.abs(np.linalg.norm(outward, axis=-1) - RADIUS) <= CLOSE
     assert 0.7 < ball.mean() < 0.9
-    # The error of a normal by central differences is less than the squared step over the distance.
+    # A normal by central differences has an error below the squared step divided by the distance.
     away = np.abs(points.normal[points.mask][ball] * RADIUS - outward[ball]).max(axis=-1)
-    assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE  # 2 % lie at edges of grooves
+    # The remaining 2 % of the points lie at edges of grooves.
+    assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE
 
 
 def test_nothing_shows_between_the_ball_and_the_foot_behind_its_edge():

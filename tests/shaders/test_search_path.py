@@ -26,7 +26,7 @@ def picture(path, channels=TINT):
 
 @pytest.fixture
 def home(tmp_path):
-    """Folder for a document; next to it, `shared` holds pictures and a document to include."""
+    """Folder for a document, beside a folder `shared` with pictures and another document."""
     picture(tmp_path / "shared/maps/a.exr")
     picture(tmp_path / "shared/set.1001.exr")
     picture(tmp_path / "shared/tile.u1_v1.exr")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shader sources of documents may include some files; others are refused with a message."""
+"""Shader sources of documents may include some files. Other files are refused with a message."""
 
 import os
 from pathlib import Path
@@ -22,12 +22,13 @@ USE = '<own name="own" type="color3"/>' + connected(color='nodename="own"')
 BODY = "void own(out vec3 result) { result = vec3(0.123); }\n"
 OTHER = "float other(float x) { return 2.0 * x; }\n"
 SECRET = "// canary\n"
-pytestmark = pytest.mark.filterwarnings("ignore")  # MaterialX warns about documents' own code
+# MaterialX warns about documents with their own code
+pytestmark = pytest.mark.filterwarnings("ignore")
 
 
 @pytest.fixture
 def home(tmp_path):
-    """Folder of a document with its own source, links that lead out of it, and files outside."""
+    """Folder of a document with its own source. Links in the folder lead to files outside."""
     folder = tmp_path / "documents"
     (folder / "lib").mkdir(parents=True)
     (folder / "link").symlink_to(tmp_path)
@@ -39,7 +40,7 @@ def home(tmp_path):
 
 
 def write(folder, file, attributes="", more=""):
-    """Write a document whose node is implemented by a shader file."""
+    """Write a document with a node that a shader file implements."""
     node = NODEDEF + IMPLEMENTATION.format("", file, attributes) + more + USE
     (folder / "look.mtlx").write_text(material(node))
 
@@ -177,7 +178,7 @@ def test_text_in_all_shaders_is_limited(home):
 
 @pytest.fixture
 def folder(tmp_path):
-    """Folder of a library with one node, whose shader source is in the same folder."""
+    """Folder of a library with one node. The node's shader source lies in the same folder."""
     folder = tmp_path / "library"
     folder.mkdir()
     node = NODEDEF + IMPLEMENTATION.format("", "own.glsl", 'function="own"')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shaders list inputs of every type as plain Python values, which hosts can set."""
+"""Shaders list inputs of every type as plain Python values, which hosts can change."""
 
 from dataclasses import replace
 

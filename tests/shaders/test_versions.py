@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""mxeon accepts a version of MaterialX by its functions instead of a list of versions."""
+"""mxeon accepts a version of MaterialX by its functions, not by a list of versions."""
 
 import MaterialX as mx
 import pytest
@@ -19,7 +19,7 @@ CACHES += (closure_calls._functions, closure_calls._signatures)
 
 @pytest.fixture
 def fresh():
-    """Clear caches of libraries and generators before and after the test."""
+    """Clear the caches of libraries and generators before and after the test."""
     for cache in CACHES:
         cache.cache_clear()
     yield
@@ -29,7 +29,7 @@ def fresh():
 
 @pytest.fixture
 def other_interface(fresh, monkeypatch, tmp_path):
-    """Make oren_nayar_diffuse_bsdf take one parameter more than MaterialX passes."""
+    """Add a parameter to eonlib's oren_nayar_diffuse_bsdf that MaterialX does not pass."""
     old, new = "float weight, vec3 color", "float gain, float weight, vec3 color"
     wrong_copy(tmp_path, old, new, "genglsl/oren_nayar_diffuse_bsdf.glsl")
     monkeypatch.setattr(library, "data_folder", lambda: tmp_path)

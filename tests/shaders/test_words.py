@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text that reaches generated source from a document must consist of plain words."""
+"""Text of a document that reaches generated source must consist of plain words."""
 
 from functools import lru_cache
 
@@ -12,17 +12,18 @@ from tests.fuzz import reach
 from tests.support.documents import lobe, material, refusal, written
 from tests.support.sharing import shared
 
-SOME = ("glsl", "osl", "mdl")  # one target per family of generators
-CLASSES = (*SOME, "msl", "slang")  # essl, vulkan and wgsl share the generator of glsl
+SOME = ("glsl", "osl", "mdl")  # one target per family of shader generators
+CLASSES = (*SOME, "msl", "slang")  # essl, vulkan and wgsl use the generator class of glsl
 IMAGE = '<image name="image" type="color3"><input name="{}" type="{}" value="{}"/></image>'
 KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
 
 
 @pytest.fixture(scope="module", autouse=True)
 def furnished(tmp_path_factory):
-    """Enter a folder with the files that documents name; documents are read once for all targets.
+    """Enter a folder with the files that the documents name.
 
-    Input values are not collected, because they are not source text.
+    Each document is read once for all targets. Input values are not collected, because they are not
+    source text.
     """
     folder = tmp_path_factory.mktemp("reach")
     reach.furnish(folder)
@@ -35,7 +36,7 @@ def furnished(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def materials(furnished, tmp_path_factory):
-    """Root of the document with materials, and the places whose text reaches source."""
+    """Root of the document with materials, and the places whose text reaches shader source."""
     root = reach.documents()["materials"]
     groups = reach.present(root)
     return root, shared(tmp_path_factory, "reach", lambda: reach.reached(root, groups, CLASSES))
@@ -52,7 +53,7 @@ def test_text_that_reaches_source_in_materials_is_words(materials):
 
 def test_text_that_reaches_source_in_outputs_is_words():
     root = reach.documents()["outputs"]
-    groups = reach.present(root)  # names, types and values need no second test
+    groups = reach.present(root)  # the test of materials covers names, types and values
     texts = [each for each in groups if each[0].attribute not in ("name", "type", "value")]
     found = reach.reached(root, texts, SOME)
     assert any(place.number == 0 and place.attribute == "namespace" for place in found)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests are skipped if a host, program or package is missing, and fail if MXEON_REQUIRE names it.
+"""Skips a test if a host, program or package is missing, or fails if MXEON_REQUIRE names it.
 
-MXEON_REQUIRE is a comma-separated list of hosts; `packages` stands for all programs and Python
-packages. `./run test --all` lists everything that it installs.
+MXEON_REQUIRE is a comma-separated list of hosts. In this list, `packages` stands for all programs
+and Python packages. `./run test --all` sets this list to everything that the command installs.
 """
 
 import os
@@ -32,19 +32,19 @@ def required():
 
 
 def missing(name, reason):
-    """Skip the test for the given reason; fail it if `name` is required."""
+    """Skip the test for the given reason, or fail if `name` is required."""
     if name in required():
         pytest.fail(f"{VARIABLE} names {name}: {reason}")
     pytest.skip(reason, allow_module_level=True)
 
 
 def program(name):
-    """Path of a program on PATH; skips the test if there is none."""
+    """Path of a program on PATH. The test is skipped if the program is missing."""
     return shutil.which(name) or missing(PACKAGES, f"no program {name}; ./run test --all has it")
 
 
 def package(name):
-    """Import and return a module; skips the test if its package is not installed."""
+    """Import and return a module. The test is skipped if the module's package is not installed."""
     try:
         return import_module(name)
     except ImportError as error:
@@ -53,7 +53,7 @@ def package(name):
 
 @contextmanager
 def available(host):
-    """Skip the test if the `with` block raises NotRun; fail it if the host is required."""
+    """Skip the test if the `with` block raises NotRun, or fail if the host is required."""
     try:
         yield
     except NotRun as reason:

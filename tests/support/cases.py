@@ -18,7 +18,7 @@ def directions(shape, seed, least=0.0):
 
 
 def pairs(count, seed):
-    """Random `wo`, `wi`, RGB `rho` and roughness; half of the cosines are near grazing."""
+    """Random `wo`, `wi`, RGB `rho` and roughness. Half of the cosines are near grazing."""
     rng = np.random.default_rng(seed)
     mu = rng.random((2, count))
     grazing = rng.random((2, count)) < 0.5
@@ -28,5 +28,5 @@ def pairs(count, seed):
 
 
 def parameter(row, fraction):
-    """Arguments of a model's functions after rho, at a fraction of the parameter's largest value."""
+    """Tuple with a fraction of the parameter's largest value; empty if there is no parameter."""
     return (row.largest * fraction,) if row.parameter else ()

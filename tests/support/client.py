@@ -3,8 +3,8 @@
 
     python -m tests.support.client FOLDER OUTPUT [DATA]
 
-Writes the GLSL of each node that FOLDER implements to OUTPUT/<implementation>.frag. Definitions
-come from MaterialX, or from DATA/libraries if DATA is given.
+The program writes the GLSL of each node that FOLDER implements to OUTPUT/<implementation>.frag.
+Definitions come from MaterialX, or from DATA/libraries if DATA is given.
 """
 
 import sys
@@ -14,8 +14,9 @@ import MaterialX as mx
 import MaterialX.PyMaterialXGenGlsl as mx_glsl
 import MaterialX.PyMaterialXGenShader as mx_gen
 
-SURFACE = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of the surface node, by type
-FILLED = {"BSDF": "conductor_bsdf", "VDF": "absorption_vdf"}  # operands of a combination, by type
+SURFACE = {"BSDF": "bsdf", "EDF": "edf"}  # inputs of the surface node, by type of the lobe
+# Nodes that fill the operands of a combination, by the operand's type.
+FILLED = {"BSDF": "conductor_bsdf", "VDF": "absorption_vdf"}
 
 
 def main(folder, output, data=None):
@@ -30,7 +31,7 @@ def main(folder, output, data=None):
 
 
 def shader(library, row, path):
-    """GLSL of a document with one node; asserts that it uses the implementation `row`."""
+    """GLSL of a document with one node. Asserts that the node uses the implementation `row`."""
     document = mx.createDocument()
     document.setDataLibrary(library)
     element = rendered(document, document.getNodeDef(row.getNodeDefString()))
@@ -44,15 +45,15 @@ def shader(library, row, path):
 
 
 def rendered(document, definition):
-    """Add a node with this definition and its operands; returns it, or a surface that uses it."""
-    # Add the node, and the operands of a combination.
+    """Add a node and its operands; return the node, or a surface if the node is a closure."""
+    # Add the node, and operands if the node combines lobes.
     kind = definition.getType()
     node = document.addNode(definition.getNodeString(), "node", kind)
     node.setNodeDefString(definition.getName())
     for port in definition.getInputs():
         if port.getType() in FILLED:
             connect(document, node, port.getName(), port.getType(), FILLED[port.getType()])
-    # Put a medium below a dielectric, and a closure on a surface.
+    # Put a medium below a dielectric, and connect a lobe to a surface.
     if kind == "VDF":
         medium, node, kind = node, document.addNode("layer", "layered", "BSDF"), "BSDF"
         connect(document, node, "top", "BSDF", "dielectric_bsdf")

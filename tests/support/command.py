@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs mxeon in a separate process and checks its one-line messages."""
+"""Runs mxeon in a separate process, and checks messages that must have one line."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ from mxeon.shaders.library import examples_folder
 
 CLAY = str(examples_folder() / "clay.mtlx")
 PLASTER = str(examples_folder() / "plaster.mtlx")
-DEADLINE = 300.0  # seconds, enough for a busy machine
+DEADLINE = 300.0  # timeout in seconds, long enough for a busy machine
 
 
 def run(*arguments, **environment):
@@ -23,7 +23,7 @@ def run(*arguments, **environment):
 
 
 def output(*command, **options):
-    """Run a program, assert that it succeeds, and return its output."""
+    """Run a program, assert that the program succeeds, and return its output."""
     command = [*map(str, command)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -31,7 +31,7 @@ def output(*command, **options):
 
 
 def wait_for(condition, process):
-    """Wait until a condition holds; fail if the process ends first."""
+    """Wait until a condition holds, and fail if the process ends before that."""
     end = time.monotonic() + DEADLINE
     while not condition():
         assert time.monotonic() < end

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small material documents as text, for the tests of the shader chain."""
+"""Small material documents as text, for the tests of reading, generation and rendering."""
 
 import pytest
 
@@ -39,7 +39,7 @@ def surface(category, **inputs):
 
 
 def connected(name="lobe", **inputs):
-    """Text of a rough diffuse node; each input has the given XML attributes."""
+    """Text of a rough diffuse node whose inputs have the given XML attributes."""
     ports = "".join(
         f'<input name="{each}" type="{INPUT_TYPES[each]}" {attributes}/>'
         for each, attributes in inputs.items()
@@ -55,14 +55,14 @@ def written(folder, text):
 
 
 def including(file):
-    """Text of a document that includes another one by XInclude."""
+    """Text of a document that includes another document by XInclude."""
     include = f'<xi:include href="{file}"/>'
     space = "http://www.w3.org/2001/XInclude"
     return f'<materialx version="1.39" xmlns:xi="{space}">{include}</materialx>'
 
 
 def refusal(source, policy=DEFAULT):
-    """Assert that a document is refused in one line, and return the message."""
+    """Assert that a document is refused with one line, and return the message."""
     with pytest.raises(DocumentError) as refused:
         generate(source, "glsl", policy=policy)
     message = str(refused.value)
@@ -76,7 +76,7 @@ def image(file, name="image"):
 
 
 def textured(files):
-    """Text of a document whose material's color is the sum of several images."""
+    """Text of a document whose material has the sum of several images as its color."""
     add = (
         '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
         '<input name="in2" type="color3" nodename="i{0}"/></add>'
@@ -87,7 +87,7 @@ def textured(files):
     return material("".join(nodes) + connected(color=f'nodename="{names[-1]}"'))
 
 
-# Definition of a rough diffuse node whose color is scaled by a studio's own shader code.
+# Definition of a rough diffuse node. A studio's own shader code scales the color.
 STUDIO = """<materialx version="1.39">
   <nodedef name="ND_studio_rough" node="studio_rough">
     <input name="color" type="color3" value="0.3, 0.1, 0.1"/>

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the parts of mxeon that need no engine, with POSIX modules, functions and signals removed.
+"""Runs the parts of mxeon that need no engine, while POSIX modules and functions are removed.
 
-Every module is imported, then each command runs in the working folder. With
-`-X warn_default_encoding`, opening a file in the platform's encoding is an error.
+The program imports every module, then runs each command in the working folder. With the Python
+option `-X warn_default_encoding`, opening a file in the platform's encoding is an error.
 """
 
 import os
@@ -43,7 +43,7 @@ COMMANDS = (
     "report diff before after",
     "report schema",
 )
-NOT_RUN = ("check", "report make")  # exit status 3: only the text of msl is checked
+NOT_RUN = ("check", "report make")  # exit status 3: the shaders for msl are generated, not run
 
 
 class Windows(ModuleType):
@@ -56,9 +56,9 @@ class Windows(ModuleType):
 
 
 def hide() -> None:
-    """Hide the modules and functions that Windows lacks."""
+    """Remove the modules, functions and signals that Windows lacks."""
     warnings.filterwarnings("error", category=EncodingWarning, module="mxeon")
-    sys.modules.update(dict.fromkeys(MODULES))  # an import of these raises ImportError
+    sys.modules.update(dict.fromkeys(MODULES))  # importing these modules raises ImportError
     for name in FUNCTIONS:
         vars(os).pop(name, None)
     for name in [each for each in vars(signal) if each.startswith(("SIG", "pthread_", "sigw"))]:
@@ -67,9 +67,9 @@ def hide() -> None:
 
 
 def import_all() -> None:
-    """Import every module that does not run in a renderer's Python, and make it see Windows.
+    """Import every module that does not run in a renderer's Python, and pretend to be Windows.
 
-    OpenGL uses EGL, which needs no display, because an X server may end at any time.
+    OpenGL uses EGL without a display, because an X server may end at any time.
     """
     import glcontext
 
@@ -87,7 +87,7 @@ def import_all() -> None:
 
 
 def main() -> None:
-    """Run everything; exit at the first command with an unexpected status."""
+    """Run everything, and exit at the first command with an unexpected status."""
     hide()
     import_all()
     import numpy as np

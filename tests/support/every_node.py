@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Judges the values of a library's nodes on gl with the MaterialX that this process imports.
+"""Judges the values of a library's nodes on gl, with the MaterialX that this process imports.
 
-python -m tests.support.every_node LIBRARY [NODE ...]     prints the verdicts as JSON
+    python -m tests.support.every_node LIBRARY [NODE ...]
+
+The program prints the verdicts as JSON.
 """
 
 import builtins

@@ -11,7 +11,7 @@ import os
 import sys
 from pathlib import Path
 
-import bpy  # isort: skip  # imported first: its folder contains the other modules
+import bpy  # isort: skip  # bpy comes first, because its folder contains the other modules
 import _cycles
 from mathutils import Vector
 
@@ -20,7 +20,7 @@ sys.path.extend(str(folder) for folder in BUNDLED.glob("python*/site-packages"))
 
 
 def set_up(kit, folder):
-    """Create the scene: the kit's camera, its sphere mesh, and its picture format."""
+    """Create the scene with the camera, the sphere mesh and the picture format of the kit."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
@@ -44,7 +44,7 @@ def set_up(kit, folder):
 
 
 def set_cycles(scene, samples):
-    """Set up Cycles with OSL and a one-pixel box filter."""
+    """Set up Cycles with OSL and a box filter of one pixel."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.device = "CPU"
@@ -105,4 +105,4 @@ def main(folder, sources, samples):
 if __name__ == "__main__":
     main(Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3]))
     sys.stdout.flush()
-    os._exit(0)  # skip Blender's slow shutdown
+    os._exit(0)  # skips Blender's slow shutdown

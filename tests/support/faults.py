@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tasks that fail on purpose in processes of the pool, and a simulated full disk."""
+"""Functions that fail on purpose in processes of the pool, and a simulation of a full disk."""
 
 import os
 import resource
@@ -17,7 +17,7 @@ def square(item):
 
 
 def misbehave(item):
-    """Fail in the way that the item names, or square the item if it is a number."""
+    """Fail in the way that the item names, or return the square if the item is a number."""
     if isinstance(item, int):
         return square(item)
     print(f"about to {item}", file=sys.stderr, flush=True)
@@ -31,7 +31,10 @@ def misbehave(item):
 
 
 def once(item):
-    """Die on the first attempt, which creates the file that the item names; succeed on the next."""
+    """Kill this process on the first attempt, and succeed on the next.
+
+    The first attempt creates the file that the item names.
+    """
     path = Path(item)
     if not path.exists():
         path.touch()
@@ -40,7 +43,7 @@ def once(item):
 
 
 class Lost:
-    """A result that kills its process on the first attempt to send it."""
+    """A result that kills its process when the process first tries to send the result."""
 
     def __init__(self, item):
         self.item = item
@@ -50,7 +53,7 @@ class Lost:
 
 
 def meet(folder):
-    """Wait until another process has begun to work, and return this process's ID."""
+    """Wait until another process has begun to work, and return the ID of this process."""
     Path(folder, str(os.getpid())).touch()
     end = time.monotonic() + 300.0
     while len(os.listdir(folder)) < 2 and time.monotonic() < end:
@@ -59,7 +62,7 @@ def meet(folder):
 
 
 def need(item):
-    """Value of the environment variable that the item names; raises NotRun if it is not set."""
+    """Value of the environment variable that the item names, or raise NotRun if it is unset."""
     if item not in os.environ:
         raise NotRun(f"{item}: missing")
     return os.environ[item]
@@ -67,7 +70,7 @@ def need(item):
 
 @contextmanager
 def room_for(size):
-    """Limit the size of each file to `size` bytes, to simulate a full disk."""
+    """Limit the size of each file to `size` bytes, as if the disk were full."""
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:

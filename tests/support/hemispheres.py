@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Views, random numbers, and a quadrature of the hemisphere, for the tests of the samplers."""
+"""Views, random numbers and quadratures of the hemisphere, for the tests of samplers."""
 
 from functools import lru_cache
 
 import numpy as np
 import pytest
-from scipy import special  # scipy.stats is slow to import
+from scipy import special  # scipy.stats would be slow to import
 
 from tools.paper.samplers import SAMPLERS
 
@@ -28,15 +28,15 @@ def rule(edges, count):
 
 
 def directions(theta, phi):
-    """Unit vectors for all combinations of the two angles, shape (*theta, *phi, 3)."""
+    """Unit vectors for all combinations of two angles, shape (*theta, *phi, 3)."""
     theta = theta.reshape(theta.shape + (1,) * phi.ndim)
     parts = (np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0.0 * phi)
     return np.stack(parts, axis=-1)
 
 
 def hemisphere(mu, count=64):
-    """Quadrature directions and solid angles, with panels that end at EON's kinks for `mu`."""
-    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # clips a rounding error
+    """Quadrature directions and solid angles. Panels end where EON has kinks for a view at `mu`."""
+    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # the minimum clips a rounding error
     theta, dtheta = rule(np.unique([0.0, kink, 0.5 * np.pi]), count)
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi
@@ -44,7 +44,7 @@ def hemisphere(mu, count=64):
 
 
 def sphere(nodes):
-    """Directions over the full sphere around a fiber along +x, and their solid angles."""
+    """Directions and solid angles over the full sphere, relative to a fiber along +x."""
     x, w = np.polynomial.legendre.leggauss(nodes)
     phi = 2.0 * np.pi * (np.arange(2 * nodes) + 0.5) / (2 * nodes)
     sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
@@ -59,7 +59,7 @@ def uniforms(count, seed):
 
 
 def binned(wi, edges, count):
-    """Number of directions below the horizon, then in each bin of polar angle and azimuth."""
+    """Number of directions below the horizon, and in each bin of polar angle and azimuth."""
     row = np.digitize(np.arccos(np.clip(wi[:, 2], -1.0, 1.0)), edges[1:-1])
     column = np.floor((np.arctan2(wi[:, 1], wi[:, 0]) / (2.0 * np.pi) % 1.0) * count).astype(int)
     bins = np.where(wi[:, 2] < 0.0, 0, 1 + row * count + np.minimum(column, count - 1))
@@ -67,8 +67,11 @@ def binned(wi, edges, count):
 
 
 def probability(sample, pdf, wo, u, count=12, nodes=24):
-    """p-value of a sampler's chi-square test against a density; the lower hemisphere is one bin."""
-    # The bins have equal projected area.
+    """p-value of a chi-square test of a sampler's samples against the density `pdf`.
+
+    All directions below the horizon share one bin.
+    """
+    # All bins have the same projected area.
     edges = np.arccos(np.sqrt(np.linspace(1.0, 0.0, 9)))
     counts = binned(sample(wo, u)[0], edges, count)
     theta, dtheta = rule(edges, nodes)
@@ -76,7 +79,7 @@ def probability(sample, pdf, wo, u, count=12, nodes=24):
     density = pdf(wo, directions(theta, phi))
     bins = np.einsum("ikjl,ik,jl->ij", density, dtheta * np.sin(theta), dphi)
     mean = len(u) * np.append(1.0 - bins.sum(), bins)
-    # Pool bins with fewer than 10 expected samples, whose statistic would not be chi-square.
+    # Pool all bins with fewer than 10 expected samples, because their statistic is not chi-square.
     likely = mean >= 10.0
     statistic = np.sum((counts - mean)[likely] ** 2 / mean[likely])
     rest = mean[~likely].sum()

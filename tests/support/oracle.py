@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The printed equations of the diffuse models in 50 digits, independent of `mxeon.models.diffuse`.
+"""The published equations of the diffuse models in 50 digits, without `mxeon.models.diffuse`.
 
-Each function takes one pair and one channel: mpmath numbers, and triples of them for directions.
+Each function takes one pair of directions and one color channel. Numbers are mpmath numbers, and
+directions are triples of mpmath numbers.
 """
 
 import mpmath as mp
@@ -11,7 +12,7 @@ half = mp.mpf(1) / 2
 
 
 def decimal(text):
-    """Constant with exactly the printed decimals."""
+    """Constant with exactly the published decimal digits."""
     return mp.mpf(text)
 
 
@@ -20,13 +21,13 @@ def s_of(wo, wi):
 
 
 def qon_quotient(wo, wi):
-    """[Portsmouth2025], Eq. (4)."""
+    """Quotient s / t of QON, [Portsmouth2025], Eq. (4)."""
     s = s_of(wo, wi)
     return s / max(wo[2], wi[2]) if s > 0 else mp.mpf(0)
 
 
 def fon_quotient(wo, wi):
-    """[Portsmouth2025], Eq. (11)."""
+    """Quotient s / t of FON, [Portsmouth2025], Eq. (11)."""
     s = s_of(wo, wi)
     return s / max(wo[2], wi[2]) if s > 0 else s
 
@@ -55,7 +56,7 @@ def qon_fujii(wo, wi, rho, sigma):
 
 
 def oren_nayar(wo, wi, rho, sigma):
-    """BRDF of [OrenNayar1994]: the terms with C1, C2 and C3, and the interreflection."""
+    """BRDF of [OrenNayar1994]: the terms with C1, C2 and C3, and interreflection."""
     theta_o, theta_i = (mp.atan2(mp.hypot(w[0], w[1]), w[2]) for w in (wo, wi))
     alpha, beta = max(theta_o, theta_i), min(theta_o, theta_i)
     cosine = mp.cos(mp.atan2(wo[1], wo[0]) - mp.atan2(wi[1], wi[0]))
@@ -69,7 +70,7 @@ def oren_nayar(wo, wi, rho, sigma):
 
 
 def fon_af(r):
-    """[Portsmouth2025], below Eq. (11)."""
+    """Coefficient A_F of FON, [Portsmouth2025], below Eq. (11)."""
     return 1 / (1 + (half - 2 / (3 * mp.pi)) * r)
 
 
@@ -78,7 +79,7 @@ def fon(wo, wi, rho, r):
 
 
 def g_q(mu):
-    """[Portsmouth2025], Eq. (8), with its limit at grazing."""
+    """Function G_Q, [Portsmouth2025], Eq. (8), with its limit at grazing."""
     if mu == 0:
         return mp.pi / 2
     theta, S = mp.acos(mu), mp.sqrt(1 - mu**2)
@@ -86,45 +87,45 @@ def g_q(mu):
 
 
 def g_f(mu):
-    """[Portsmouth2025], Eq. (13)."""
+    """Function G_F, [Portsmouth2025], Eq. (13)."""
     return g_q(mu) - mp.mpf(2) / 3 * mp.sqrt(1 - mu**2)
 
 
 def g_f_approx(mu):
-    """[Portsmouth2025], Eq. (14)."""
+    """Approximation of G_F, [Portsmouth2025], Eq. (14)."""
     printed = ("0.0571085289", "0.491881867", "-0.332181442", "0.0714429953")
     return mp.pi * sum(decimal(g) * (1 - mu) ** k for k, g in enumerate(printed, start=1))
 
 
 def qon_albedo_dir(mu, rho, sigma):
-    """[Portsmouth2025], Eq. (5)."""
+    """Directional albedo of QON, [Portsmouth2025], Eq. (5)."""
     a, b = 1 - fraction(sigma, "0.5", "0.33"), fraction(sigma, "0.45", "0.09")
     return rho * (a + b / mp.pi * g_q(mu))
 
 
 def fon_albedo_dir(mu, rho, r, g=g_f):
-    """[Portsmouth2025], Eq. (12)."""
+    """Directional albedo of FON, [Portsmouth2025], Eq. (12)."""
     return rho * (fon_af(r) + r * fon_af(r) / mp.pi * g(mu))
 
 
 def fon_albedo_avg(rho, r):
-    """[Portsmouth2025], Eq. (15)."""
+    """Average albedo of FON, [Portsmouth2025], Eq. (15)."""
     return rho * (fon_af(r) + (mp.mpf(2) / 3 - 28 / (15 * mp.pi)) * r * fon_af(r))
 
 
 def eon_albedo_dir(mu, rho, r):
-    """[Portsmouth2025], Eq. (28)."""
+    """Directional albedo of EON, [Portsmouth2025], Eq. (28)."""
     e, average = fon_albedo_dir(mu, 1, r), fon_albedo_avg(1, r)
     return rho * ((1 - rho) * e + rho * average) / ((1 - rho) + rho * average)
 
 
 def eon_albedo_avg(rho, r):
-    """[Portsmouth2025], Eq. (33), solved for C."""
+    """Average albedo of EON, [Portsmouth2025], Eq. (33) solved for C."""
     return rho * fon_albedo_avg(1, r) / (1 - rho * (1 - fon_albedo_avg(1, r)))
 
 
 def eon(wo, wi, rho, r, g=g_f):
-    """[Portsmouth2025], Eqs. (16), (19); r > 0."""
+    """BRDF of EON, [Portsmouth2025], Eqs. (16) and (19), for r > 0."""
     average = fon_albedo_avg(1, r)
     losses = [max(mp.mpf(0), 1 - fon_albedo_dir(w[2], 1, r, g)) for w in (wo, wi)]
     factor = rho**2 / mp.pi * average / (1 - rho * (1 - average))

@@ -9,7 +9,7 @@ from mxeon.shaders.nodes import EON, OREN_NAYAR
 
 
 def keep_checks(patch, *keys):
-    """Restrict the runs of this process to the checks `keys` of diffuse nodes."""
+    """Restrict the runs of this process to the given checks of diffuse nodes."""
     others = {*node_names()} - {EON, OREN_NAYAR}
     keep(patch, lambda task: task.check in keys and task.subject.split(",")[0] not in others)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Made-up results and journals, for tests that process results."""
+"""Invented results and journals, for tests that process results."""
 
 from contextlib import contextmanager
 from dataclasses import replace
@@ -36,14 +36,14 @@ PIXELS = np.linspace(0.0, 1.0, 12, dtype=np.float32).reshape(2, 2, 3)
 
 
 def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", **fields):
-    """Made-up result of a check, by default of the node EON."""
+    """Invented result of a check, by default a check of the EON node."""
     error = {PASSED: 1e-7, FAILED: 0.37}.get(verdict)
     numbers = {"error": error, "tolerance": 2e-6} if error else {}
     return Result(key, "claim", subject, host, library, verdict, **numbers | fields)
 
 
 def made_run(*results, documents=("a/clay.mtlx",), **fields):
-    """Made-up run with the given results and documents."""
+    """Invented run with the given results and documents."""
     contents = dict.fromkeys(documents, (EON,))
     software, hosts = {"MaterialX": "1.39.5"}, (Identity("gl", "4.5", "cpu"),)
     return Run("1", software, hosts, results, contents=contents, **fields)
@@ -72,7 +72,7 @@ def journal(folder, plan=PLAN, **options):
 
 
 def kept(folder, *results):
-    """Write the journal of a run with the given results, and return its folder."""
+    """Write the journal of a run with the given results, and return the journal's folder."""
     tasks = tuple(Task(each.check, each.subject, each.host, each.library) for each in results)
     with journal(folder, replace(PLAN, tasks=tasks)) as written:
         for number, each in enumerate(results):

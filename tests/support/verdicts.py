@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Judges one check of one node, or one document, as a run does; and reads diagnoses."""
+"""Judges one check of one node, or one document, as in a run; and searches diagnoses."""
 
 from mxeon.conformance import words
 from mxeon.conformance.run.judge import Judge
@@ -8,13 +8,13 @@ from mxeon.hosts import open_engine
 from mxeon.shaders.document.policy import DEFAULT
 
 PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
-SOURCE = "source"  # host name in results of text checks
-STOCK, RENDERER_NODES = "stock", "its own nodes"  # library names in results
+SOURCE = "source"  # name of the host in results of text checks
+STOCK, RENDERER_NODES = "stock", "its own nodes"  # names of libraries in results
 SHADER_FUNCTIONS = "shader twins"  # subject of checks of shader functions
 
 
 class Verdicts:
-    """Judges nodes and documents on hosts, which a function returns by name."""
+    """Judges nodes and documents on hosts. `hosts` is a function that returns a host by name."""
 
     def __init__(self, hosts=open_engine):
         self._judge = Judge(DEFAULT, hosts)
@@ -25,7 +25,7 @@ class Verdicts:
         return result
 
     def all(self, check, subject, host="gl", library="eonlib", **task):
-        """All results of one task; tasks on texts and functions have several."""
+        """All results of one task. Tasks that check texts or functions have several results."""
         return self._work(check, subject, host, library, **task).results
 
     def texts(self, check, library):
@@ -34,11 +34,11 @@ class Verdicts:
         return {each.subject: each for each in results if each.check == check}
 
     def unjudged(self, check, library, host="gl"):
-        """Subjects that a check of a whole library does not judge, with reasons."""
+        """Subjects that a check of a whole library does not judge, and the reasons."""
         return dict(self._work(check, EVERY_NODE, host, library).unjudged)
 
     def document(self, path, host="gl", library="eonlib"):
-        """Findings of a document: results, pictures, notes and reading errors."""
+        """Findings of a document: results, pictures, notes and errors while reading."""
         return self._work("picture", str(path), host, library)
 
     def _work(self, check, subject, host, library, **task):
@@ -46,9 +46,9 @@ class Verdicts:
 
 
 def has(result, *wanted):
-    """Whether a single cause in the diagnosis has all wanted kinds, keys, names and numbers.
+    """Whether a single cause in the diagnosis contains all wanted kinds, keys, names and numbers.
 
-    A wanted text with spaces may be part of a title or name. Numbers are compared to two digits.
+    A wanted text with spaces may be part of a title or name. Numbers match if two digits agree.
     """
     return not wanted or any(
         all(any(_matches(each, field) for field in _fields(cause)) for each in wanted)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs modules with other versions of MaterialX, whose folders come first on Python's path.
 
-A version is downloaded once and kept in `out/materialx`, which git ignores.
+Each version is downloaded once and stored in `out/materialx`, which git ignores.
 """
 
 import os
@@ -21,17 +21,18 @@ from tools.site.ledger import linked
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT = ROOT / "out" / "materialx"
-# Patch that turns the data of MaterialX's release into that of its main branch.
+# Patch that turns the data of MaterialX's release into the data of its main branch.
 MAIN = ROOT / "tests" / "materialx_main" / "libraries.patch"
 
 
 def wheel(version):
     """Folder of a MaterialX version; "main" is the installed version with the main branch's data.
 
-    `./run test --all` installs other versions; the test is skipped if one is not available.
+    `./run test --all` installs the other versions. If a version is not available, the test is
+    skipped.
     """
     if version == mx.getVersionString():
-        return ROOT  # has no MaterialX, so Python finds the installed one
+        return ROOT  # this folder contains no MaterialX, so Python imports the installed version
     name = f"main-{sha256(MAIN.read_bytes()).hexdigest()[:12]}" if version == "main" else version
     folder = KEPT / name
     if not folder.is_dir():
@@ -43,7 +44,7 @@ def wheel(version):
             _main(Path(beside)) if version == "main" else install(version, beside)
             os.replace(beside, folder)
         except (subprocess.SubprocessError, OSError):
-            if not folder.is_dir():  # another worker may have been faster
+            if not folder.is_dir():  # another test process may have created the folder
                 raise
         finally:
             shutil.rmtree(beside, ignore_errors=True)
@@ -51,7 +52,7 @@ def wheel(version):
 
 
 def _main(folder):
-    """Create links to the installed MaterialX, with the main branch's data as files."""
+    """Create links to the installed MaterialX, but write the main branch's data as files."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     for file in re.findall(r"^--- a/(.*)$", MAIN.read_text(), re.MULTILINE):
         data = (package / file).read_bytes()
@@ -61,7 +62,7 @@ def _main(folder):
 
 
 def git(folder, *arguments):
-    """Output of git in a folder, without the user's settings and enclosing repositories."""
+    """Output of git in a folder. The user's settings and enclosing repositories have no effect."""
     user = {"user.name": "tests", "user.email": "tests@mxeon.invalid", "core.autocrlf": "false"}
     options = [word for name, value in user.items() for word in ("-c", f"{name}={value}")]
     env = os.environ | {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
@@ -74,7 +75,7 @@ def install(version, folder):
     """Install a version of MaterialX without its dependencies into a new folder."""
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder]
     command += ["--timeout", "30", f"materialx=={version}"]
-    subprocess.run(command, check=True, capture_output=True, timeout=300.0)  # 25 MB
+    subprocess.run(command, check=True, capture_output=True, timeout=300.0)  # a download of 25 MB
 
 
 def run(folder, *arguments, module="mxeon"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of eonlib and of MaterialX's libraries with one wrong text."""
+"""Copies of eonlib and of MaterialX's libraries in which one text is wrong."""
 
 import re
 import shutil
@@ -12,14 +12,14 @@ STOCK, GLSL = standard_folders()[0], "pbrlib/genglsl"
 
 
 def copy_of_eonlib(folder):
-    """Copy eonlib to a folder, and return the folder of its documents."""
+    """Copy eonlib to a folder, and return the folder of eonlib's documents."""
     for name in ("libraries", "genglsl", "genosl"):
         shutil.copytree(data_folder() / name, folder / name)
     return folder / "libraries"
 
 
 def replace_text(folder, old, new, *files):
-    """Replace a text everywhere in the given files; at least one file must contain it."""
+    """Replace a text everywhere in the given files. At least one file must contain the text."""
     texts = {folder / file: (folder / file).read_text(encoding="utf-8") for file in files}
     assert any(old in text for text in texts.values())
     for path, text in texts.items():
@@ -44,7 +44,7 @@ def copy_of_stock(folder, *parts):
 
 
 def wrong_stock(folder, file, *changes):
-    """Path of a library with a single file of MaterialX's, in which texts are replaced."""
+    """Path of a library that contains only one file of MaterialX's, with texts replaced."""
     copy_of_stock(folder, file)
     for old, new in changes:
         replace_text(folder, old, new, file)
@@ -52,21 +52,25 @@ def wrong_stock(folder, file, *changes):
 
 
 def wrong_stock_node(folder, name, old, new):
-    """Path of a library with only one node's GLSL from MaterialX, in which a text is replaced."""
+    """Path of a library with only the GLSL of one MaterialX node, in which a text is replaced."""
     file = name if name.endswith(".glsl") else f"mx_{name}.glsl"
-    if not (STOCK / GLSL / file).is_file():  # nodes may share a file
+    if not (STOCK / GLSL / file).is_file():  # several nodes may share a file
         rows = (STOCK / GLSL / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8")
         [file] = re.findall(rf'nodedef="ND_{name}" file="([^"]+)"', rows)
     return wrong_stock(folder, f"{GLSL}/{file}", (old, new))
 
 
 def wrong_library(folder, file, old, new):
-    """Path of a copy of eonlib or, for a bare file name, MaterialX's GLSL, with a text replaced."""
+    """Path of a library with a text replaced in `file`.
+
+    The library is a copy of eonlib. If `file` is a name without a folder, the library contains only
+    this GLSL file of MaterialX.
+    """
     if "/" in file:
         return wrong_copy(folder, old, new, file)
     return wrong_stock_node(folder, file, old, new)
 
 
 def place_of(name, language="glsl"):
-    """Path of the eonlib source with the given stem, relative to a copy."""
+    """Path of the eonlib source with the given stem, relative to the folder of a copy."""
     return source_file(language, name).relative_to(data_folder())

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A picture recorded from OSL's real programs, and stand-ins that replay it.
+"""A picture recorded from OSL's real programs, and stand-ins that replay the picture.
 
     python -c "from tests.support import osl; osl.record()"
 
-This command records the picture again with the programs that MXEON_OSLC, MXEON_TESTRENDER and
-MXEON_TESTSHADE name.
+This command records the picture again with the programs that the variables MXEON_OSLC,
+MXEON_TESTRENDER and MXEON_TESTSHADE name.
 """
 
 from pathlib import Path
@@ -17,14 +17,15 @@ from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import FLAG, OREN_NAYAR, material_text
 
 FOLDER = Path(__file__).parent
-TITLE = "oslc -- Open Shading Language compiler 1.15.6.0"  # title of the recorded build
-PICTURE = FOLDER / "pairs.tif"  # testrender's picture of the pairs
+# Title of the OSL build that was recorded.
+TITLE = "oslc -- Open Shading Language compiler 1.15.6.0"
+PICTURE = FOLDER / "pairs.tif"  # the recorded picture of direction pairs
 INPUTS = {"color": (0.2, 0.5, 0.8), "roughness": 1.0, FLAG: True}
 VIEWS = np.array([(0.6, 0.0, 0.8), (0.0, 0.28, 0.96), (-0.48, 0.64, 0.6), (0.96, 0.0, 0.28)])
 LIGHTS = np.array([(0.0, 0.6, 0.8), (0.96, 0.0, 0.28), (0.48, -0.6, 0.64), (-0.6, 0.0, 0.8)])
 
-# Scripts of the stand-ins: oslc prints the recorded title and copies sources as compiled shaders;
-# testrender copies the recorded picture if the scene is the recorded one.
+# Scripts of the stand-ins. oslc prints the recorded title and copies sources as compiled shaders.
+# If the scene is the recorded scene, testrender copies the recorded picture.
 REPLAY = {
     "oslc": """case "$1" in
     --help) echo "{title}"; exit 0 ;;
@@ -51,7 +52,7 @@ def values(host):
 
 
 def write_replay(folder):
-    """Write the stand-ins to a folder; returns their paths by environment variable."""
+    """Write the stand-ins to a folder; return their paths by environment variable."""
     words = {"title": TITLE, "folder": FOLDER}
     paths = {}
     for name, text in REPLAY.items():
@@ -63,7 +64,10 @@ def write_replay(folder):
 
 
 def record():
-    """Record the picture again. TITLE, the first line of `oslc --help`, is changed by hand."""
+    """Record the picture again.
+
+    TITLE is the first line of `oslc --help` and must be changed by hand.
+    """
     with TestrenderHost() as host:
         values(host)
         folder = host._folder
