@@ -83,8 +83,9 @@ def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
     - `step`: Stride over the cells of each angle. The first cell is `step // 2`. A step of 1 uses
       all cells.
 
-    Directions are those of the cell centers. Cells below the horizon and cells marked as unmeasured
-    are skipped. MERL files have no errors. Raises InputError if the file has another format.
+    Directions belong to the centers of the cells. Cells below the horizon and cells marked as
+    unmeasured are skipped. MERL files have no errors. Raises InputError if the file has another
+    format.
 
     [Matusik2003] describes the files, and [Rusinkiewicz1998] defines the angles.
     """

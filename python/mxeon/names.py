@@ -36,8 +36,8 @@ def unknown(
 ) -> str:
     """The message that a name is unknown, or "" for a known name.
 
-    The message lists the known names, unless there are many names and one is similar, or unless
-    `listing` states where the names are listed.
+    The message lists the known names, unless there are many names and a similar name is known,
+    or unless `listing` states where the names are listed.
 
     >>> unknown("model", "nope", ("eon", "fon"), listing="mxeon.model_names()")
     "no model 'nope'; see mxeon.model_names()"

@@ -67,7 +67,8 @@ class Backend(ABC):
     """A base class for evaluating one node on an engine."""
 
     abilities: ClassVar[Ability]  # supported kinds of nodes and checks
-    # Kinds of states in the check `states`, such as "lights", of which only the first is supported.
+    # Kinds of states in the check `states`, such as "lights", of which only the first state is
+    # supported.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # replaces the counts of specs with more pairs
@@ -213,7 +214,7 @@ class Backend(ABC):
 def isotropic(batch: Batch) -> Batch:
     """A batch without anisotropy, because prefiltered light has a single roughness.
 
-    The geometric mean of both alphas replaces each alpha.
+    The two alphas are replaced by their geometric mean.
     """
     inputs: dict[str, Array] = {}
     for name, value in batch.inputs.items():
@@ -486,7 +487,7 @@ FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
-# Error of the light's direction in radians. A point is up to JITTER pixels beside the middle of its
+# Error of the light's direction in radians. A point is up to JITTER pixels from the center of its
 # pixel. On a triangle at a grazing angle, this distance is divided by the cosine RIM.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
 DISPLACED = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
@@ -598,7 +599,7 @@ class Rendered(RenderablePairs):
 
 
 class Traced(Rendered):
-    """Cycles, which computes lighting with its own closures, except for rough diffuse nodes."""
+    """Cycles, which computes lighting with its own closures, for all but rough diffuse nodes."""
 
     abilities = Ability.LOBE | Ability.COMBINATION | Ability.PAIRS
     variants = CYCLES_VARIANTS
@@ -676,9 +677,9 @@ FOUR_PICTURES = Term(
 )
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
-# A pixel's point is the sum of a ray's origin and the ray. Both have lengths up to 2, so that each
-# of three roundings is at most 2^-23. Grazing views divide the error by cos(theta_o). A relative
-# error is also divided by cos(theta_i).
+# A pixel's point is the sum of a ray's origin and the ray. The origin and the ray have lengths of
+# up to 2, so that each of three roundings is at most 2^-23. Grazing views divide the error by
+# cos(theta_o). A relative error is also divided by cos(theta_i).
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),

@@ -82,7 +82,7 @@ def mean_error(measured: Array, expected: Array) -> Array:
 
 
 def mean_scaled(measured: Array, expected: Array) -> Array:
-    """The `mean_error` after each row is divided by 1 or, if larger, its largest expected value."""
+    """The `mean_error` of rows divided by 1 or, if larger, by the row's largest expected value."""
     scale = _scale(expected)
     return mean_error(measured / scale, expected / scale)
 

@@ -37,7 +37,7 @@ class Context(SpawnContext):
 
 @contextmanager
 def safe_path() -> Iterator[None]:
-    """Give a safe import path to all processes that `multiprocessing` starts in this block.
+    """Give a safe import path to all processes that `multiprocessing` starts in the block.
 
     Processes that other threads start are included. The command line gets the option -P, because
     PYTHONSAFEPATH has no effect together with -E. Workers get the import path of the parent without

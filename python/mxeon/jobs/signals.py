@@ -21,7 +21,7 @@ def _existing(*names: str) -> tuple[signal.Signals, ...]:
 
 TERMINAL = _existing("SIGINT", "SIGHUP", "SIGBREAK")  # sent to all processes of a terminal
 ENDING = (*TERMINAL, signal.SIGTERM)
-# These signals end a process by default.
+# The signals in OTHERS also end a process by default.
 OTHERS = _existing("SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
 LOCK = ".lock"  # name of the lock file in a temporary folder
@@ -65,10 +65,10 @@ def raise_signals() -> Iterator[None]:
 
 @contextmanager
 def block_signals() -> Iterator[None]:
-    """Block the signals of a terminal in this block, so that child processes inherit the mask.
+    """Block the signals of a terminal, so that child processes inherit the signal mask.
 
     SIGTERM is not blocked, because this process ends its children by SIGTERM. Signals that arrive
-    in the block are raised at the end of the block. Windows has no signal masks.
+    in the `with` block are raised at the end of the block. Windows has no signal masks.
     """
     global _pending
     _pending = []

@@ -60,13 +60,15 @@ class Issue:
     implied: tuple[Row, ...] = ()
     # Results that pass with the patch, by default all of `rows` that are not in `remains`.
     repaired: tuple[Row, ...] = ()
-    # Results that, with the patch, either pass or still fail for one of these causes.
+    # Results that, with the patch, either pass or still fail for one of the listed causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
     needs: tuple[str, ...] = ()  # other pages whose patches must also be applied
     kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
     pull: int = 0  # number of the pull request that repairs the defect after the release
     cause: Cause | None = None  # first cause in the diagnosis of the first row
-    patch: tuple[str, ...] = ()  # a MaterialX file, and part of its text before and after
+    # A file of MaterialX, and the text that the patch changes in the file, before and after the
+    # change.
+    patch: tuple[str, ...] = ()
     # The largest measured error of each result.
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
 

@@ -162,7 +162,7 @@ def check(
 
 
 def with_studio(run: Run, policy: Policy) -> Run:
-    """The run with studio pictures of documents, which `check` draws only if it has a folder."""
+    """The run with studio pictures of documents, which `check` only draws if a folder is given."""
     libraries = dict.fromkeys(each.library for each in run.results if each.host == "gl")
     subjects = product(libraries, list(run.contents)[: plan.STUDIED])
     tasks = [Task(plan.STUDIO, file, "gl", library) for library, file in subjects]
