@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits a measured BRDF and draws its lobes: `python fit_measured.py [FILE.binary] [--out FOLDER]`.
 
-FILE is a material of the MERL database. Without FILE, the script writes values of a coated clay
-with noise as such a file, so that the fit can be compared with the parameters of the clay. The
-script needs scipy and matplotlib: `pip install '.[fit,report]'` in a checkout.
+FILE is a material of the MERL database. Without FILE, the script writes a file with noisy values of
+a coated clay, so that the fit can be compared with the parameters of the clay. The script needs
+scipy and matplotlib: `pip install '.[fit,report]'` in a checkout.
 """
 
 import argparse
@@ -17,13 +17,13 @@ import mxeon
 from mxeon.fit import MERL_CELLS, MERL_SCALES, fit_brdf, merl_directions, read_merl
 
 CLAY = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
-NOISE, FLOOR, SEED = 0.03, 1e-4, 20261122  # relative noise; additional noise in 1/sr
-STEP = 9  # read every ninth cell of each angle
+NOISE, FLOOR, SEED = 0.03, 1e-4, 20261122  # relative noise, and additional noise in 1/sr
+STEP = 9  # stride over the cells of each angle
 VIEW = np.radians(50.0)  # polar angle of the viewer in the plot
 
 
 def write_clay(path):
-    """Write values of the coated clay with noise as a MERL file."""
+    """Write noisy values of the coated clay as a MERL file."""
     rng, values = np.random.default_rng(SEED), np.full((3, *MERL_CELLS), -1.0)
     cells = np.meshgrid(*(np.arange(STEP // 2, n, STEP) for n in MERL_CELLS), indexing="ij")
     h, d, phi = ((each.ravel() + 0.5) / n for each, n in zip(cells, MERL_CELLS, strict=True))
@@ -36,7 +36,7 @@ def write_clay(path):
 
 
 def draw(path, data, fits):
-    """Draw data and fitted lobes in the plane of incidence, red channel."""
+    """Draw the red channel of data and of fitted lobes in the plane of incidence."""
     matplotlib.use("agg")
     from matplotlib import pyplot
 
@@ -65,8 +65,8 @@ def main():
     if options.file is None:
         write_clay(path)
         print("put in:", CLAY)
-    # Fit with errors in proportion to the data, then with errors in proportion to the first fit:
-    # errors in proportion to the data give more weight to values that noise has lowered.
+    # The first fit has errors in proportion to the data, which give more weight to values that
+    # noise has lowered. So the errors of the second fit are in proportion to the first fit.
     data, models = read_merl(path, STEP), ("eon", "dielectric_over_eon")
     first = fit_brdf(replace(data, error=NOISE * data.value + FLOOR), models[-1])
     data = replace(data, error=NOISE * first.brdf(data.wo, data.wi) + FLOOR)

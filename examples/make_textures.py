@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the images of `textures/`: `python make_textures.py [FOLDER]`.
+"""Makes the images in `textures/`: `python make_textures.py [FOLDER]`.
 
 Colors are chosen as sRGB code values, as in a paint program. The pixels are the same on every
 machine, because they are computed from seeded random numbers by sums, products and square roots,
-which IEEE 754 rounds alike everywhere. All images tile, and are twice as wide as high, so that
+which IEEE 754 rounds alike everywhere. All images are tileable, and twice as wide as high, so that
 bricks keep their shape under a latitude-longitude mapping.
 """
 
@@ -14,21 +14,21 @@ import numpy as np
 import OpenImageIO as oiio
 
 COLUMNS, ROWS = 8, 12
-BRICK = (16, 48)  # height and width in pixels, half of a joint on each side included
+BRICK = (16, 48)  # height and width in pixels, including half of a joint on each side
 SEED = 20250304
 
-# sRGB code values of bricks: lightest and darkest fired clay, clay burnt in the kiln, and joints.
+# sRGB code values of the lightest and darkest fired clay, of burnt clay, and of joints.
 PALE, DARK = np.array([0.72, 0.40, 0.28]), np.array([0.52, 0.22, 0.16])
 BURNT, MORTAR = np.array([0.33, 0.21, 0.20]), np.array([0.68, 0.65, 0.59])
 BURNT_SHARE = 0.12
 
-# sRGB code values of wood: early and late growth of a year.
+# sRGB code values of wood that grows early and late in a year.
 EARLY, LATE = np.array([0.72, 0.47, 0.26]), np.array([0.42, 0.22, 0.11])
 YEARS = 14  # growth rings across the image
 
 
 def tileable_noise(rng, shape, cells):
-    """Value noise in [0, 1] over `shape` pixels, with `cells` cells down and across."""
+    """Value noise in [0, 1] on an image of `shape` pixels with `cells` lattice cells."""
     lattice = rng.random(cells)
     for axis, (length, count) in enumerate(zip(shape, cells, strict=True)):
         position = (np.arange(length) + 0.5) * count / length
@@ -42,9 +42,8 @@ def tileable_noise(rng, shape, cells):
 
 
 def bricks():
-    """Index of the brick at each pixel, and the distance from the brick's face in pixels.
-
-    The distance is negative on the face.
+    """Index of the brick at each pixel, and the signed distance in pixels from the face of the
+    brick. The distance is negative on the face.
     """
     y, x = np.mgrid[: ROWS * BRICK[0], : COLUMNS * BRICK[1]]
     row = y // BRICK[0]
@@ -61,7 +60,7 @@ def bricks():
 
 
 def images():
-    """The color image, sRGB code values in [0, 1], and the roughness image, in [0, 1]."""
+    """An image of color as sRGB code values in [0, 1], and an image of roughness in [0, 1]."""
     rng = np.random.default_rng(SEED)
     index, distance = bricks()
     shape = index.shape
@@ -70,7 +69,7 @@ def images():
     coarse = tileable_noise(rng, shape, (24, 48))
     fine = tileable_noise(rng, shape, (96, 192))
     grain = 0.6 * coarse + 0.4 * fine - 0.5
-    # Weather the edges: noise moves the border of the face by up to a pixel.
+    # Noise moves the border of the face by up to a pixel, like weathering.
     joint = np.clip(distance + 2.0 * grain + 0.5, 0.0, 1.0)[..., None]
     face = DARK + (PALE - DARK) * np.clip(tone + 0.5 * grain, 0.0, 1.0)[..., None]
     is_burnt = burnt < BURNT_SHARE
@@ -83,7 +82,7 @@ def images():
 
 
 def wood():
-    """The color image of wood, sRGB code values in [0, 1]; the grain runs down."""
+    """An image of wood as sRGB code values in [0, 1], with vertical grain."""
     rng = np.random.default_rng(SEED + 1)
     shape = (ROWS * BRICK[0], COLUMNS * BRICK[1])
     bend = tileable_noise(rng, shape, (2, 7))
@@ -91,7 +90,7 @@ def wood():
     pores = tileable_noise(rng, shape, (16, 192))
     year = np.arange(shape[1]) * YEARS / shape[1] + 2.5 * bend + 0.15 * fibers
     part = year - np.floor(year)
-    # Late growth darkens slowly and ends abruptly.
+    # Wood gets darker slowly in a year, and the dark part ends abruptly.
     late = part * part * np.clip(8.0 * (1.0 - part), 0.0, 1.0)
     color = EARLY + (LATE - EARLY) * late[..., None]
     dark = 1.0 + 0.25 * fibers - 0.3 * np.clip(4.0 * pores - 3.2, 0.0, 1.0)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Read and write files of text, records and NumPy arrays. Independent of shading."""
+"""Read and write files of text, records and NumPy arrays."""

@@ -16,13 +16,13 @@ from typing import TypeAlias
 from mxeon.errors import InputError
 
 AnyPath = str | os.PathLike[str]
-BINARY: int = getattr(os, "O_BINARY", 0)  # otherwise, Windows writes "\r\n" for "\n"
-Names: TypeAlias = AnyPath | Iterable[AnyPath]  # a name or path, or several
+BINARY: int = getattr(os, "O_BINARY", 0)  # this flag stops Windows from writing "\r\n" for "\n"
+Names: TypeAlias = AnyPath | Iterable[AnyPath]  # one or more names or paths
 TEMPORARY = ".mxeon-"  # prefix of incomplete files and folders
 
 
 def one_name(parameter: str, value: object) -> str:
-    """A name or path as text; raise InputError for anything else, such as a list."""
+    """A name or path as text. Raises InputError for any other value, such as a list."""
     name = os.fspath(value) if isinstance(value, str | os.PathLike) else value
     if not isinstance(name, str):
         raise InputError(f"{parameter} must be one name or path; got {value!r}")
@@ -30,7 +30,7 @@ def one_name(parameter: str, value: object) -> str:
 
 
 def names_of(parameter: str, value: object, least: int = 1) -> tuple[str, ...]:
-    """Convert a name or path, or several, to strings.
+    """Convert one or more names or paths to strings.
 
     >>> names_of("hosts", "gl"), names_of("files", [Path("a.mtlx"), "b.mtlx"])
     (('gl',), ('a.mtlx', 'b.mtlx'))
@@ -47,7 +47,7 @@ def names_of(parameter: str, value: object, least: int = 1) -> tuple[str, ...]:
 
 
 def below(folder: AnyPath, name: AnyPath) -> Path:
-    """Path of a file in a user's folder. Refuse links in the folder, which may lead elsewhere."""
+    """Path of a file in a user's folder. Raises InputError for links, which may lead elsewhere."""
     path = Path(folder)
     for part in Path(name).parts:
         path /= part
@@ -65,9 +65,10 @@ def check_output(
 ) -> None:
     """Raise InputError or OSError unless an output can be written without replacing an input.
 
-    Files are compared by identity, which covers links and other spellings of a name. `inputs` is
-    only iterated if the output exists. With `replaced`, the output is a folder, and files that
-    match these patterns will be replaced; with `apart`, no input may lie in that folder.
+    Files are compared by device and inode, so that links and other spellings of a name are
+    recognized. `inputs` is only iterated if the output exists. If there are patterns in `replaced`,
+    the output is a folder in which matching files will be replaced. If `apart` is true, no input
+    may be in that folder.
     """
     place = Path(output)
     if not os.fspath(output):
@@ -99,7 +100,7 @@ def check_output(
 
 
 def _identity(path: AnyPath) -> tuple[int, int] | None:
-    """Device and inode of a file or folder; None if it does not exist."""
+    """Device and inode of a file or folder, or None for a path that does not exist."""
     try:
         status = os.stat(path)
     except (OSError, ValueError):
@@ -109,11 +110,11 @@ def _identity(path: AnyPath) -> tuple[int, int] | None:
 
 @contextmanager
 def replacing(path: AnyPath) -> Iterator[Path]:
-    """Yield a new empty file that replaces `path` if the block succeeds, and is deleted otherwise.
+    """Yield a new empty file, which replaces `path` if the block succeeds and is deleted otherwise.
 
-    The file is next to `path`; the folder is created if needed. Links are followed: use `below` for
-    names that the user did not write. The new file has the suffix of `path`, from which image
-    writers infer the format.
+    The file is in the folder of `path`, which is created if needed. Links are followed, so `below`
+    must check names that the user did not write. The new file has the suffix of `path`, from which
+    image writers infer the format.
     """
     path = Path(os.path.realpath(path)) if os.path.islink(path) else Path(path)
     if not path.name:
@@ -121,23 +122,23 @@ def replacing(path: AnyPath) -> Iterator[Path]:
     if path.exists() and not path.is_file():  # replacing a device would destroy it
         raise OSError(errno.EINVAL, "not a regular file", str(path))
     path.parent.mkdir(parents=True, exist_ok=True)
-    # The name is unpredictable, so nobody else can have created a file or link of the same name.
+    # The name is unpredictable, so no other program can have created a file or link with that name.
     temporary = path.with_name(f"{TEMPORARY}{token_hex(8)}{path.suffix}")
     with naming(path):
         os.close(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
         try:
             yield temporary
-            with temporary.open("r+b") as file:  # Windows only flushes writable files
-                os.fsync(file.fileno())  # some file systems report a full disk only here
+            with temporary.open("r+b") as file:  # Windows can flush only writable files
+                os.fsync(file.fileno())  # the first report of a full disk on some file systems
             os.replace(temporary, path)
         finally:
-            with suppress(OSError):  # if the folder is not writable, the first error says so
+            with suppress(OSError):  # an earlier error says more
                 temporary.unlink(missing_ok=True)
 
 
 @contextmanager
 def naming(path: AnyPath) -> Iterator[None]:
-    """Make system errors in the block name `path` instead of a temporary file or nothing."""
+    """Let system errors in the block name `path` instead of a temporary file or no file."""
     try:
         yield
     except OSError as error:
@@ -147,16 +148,16 @@ def naming(path: AnyPath) -> Iterator[None]:
 
 
 def write_text(path: AnyPath, text: str) -> None:
-    """Write `text` to `path` in UTF-8, replacing the file atomically; see `replacing`.
+    """Write `text` to `path` in UTF-8. An existing file is replaced atomically.
 
-    Lone surrogates become "?": file names can contain them, UTF-8 cannot.
+    Lone surrogates, which file names can contain but UTF-8 cannot, are replaced by "?".
     """
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8", errors="replace", newline="\n")
 
 
 def sync(folder: AnyPath) -> None:
-    """Flush a folder's list of names to disk, except on Windows, which cannot open folders."""
+    """Flush a folder's list of files to disk, except on Windows, which cannot open folders."""
     if sys.platform == "win32":
         return
     file = os.open(folder, os.O_RDONLY)
@@ -169,9 +170,10 @@ def sync(folder: AnyPath) -> None:
 def regular(path: AnyPath, flags: int) -> int:
     """Open a regular file and return its descriptor: `open(path, opener=regular)`.
 
-    Pipes and devices are refused: they may have no end, and a pipe without a writer blocks.
+    Pipes and devices are refused, because a device may have no end and a pipe without a writer
+    blocks.
     """
-    file = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))  # Windows has no such flag
+    file = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))  # Windows has no O_NONBLOCK
     if not stat.S_ISREG(os.fstat(file).st_mode):
         os.close(file)
         raise OSError(errno.EINVAL, "not a regular file", os.fspath(path))
@@ -179,7 +181,7 @@ def regular(path: AnyPath, flags: int) -> int:
 
 
 def digest(path: AnyPath) -> str:
-    """SHA-256 of a regular file as hex digits; "" if it cannot be read."""
+    """SHA-256 of a regular file as hexadecimal digits, or "" for a file that cannot be read."""
     with suppress(OSError), open(path, "rb", opener=regular) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
     return ""

@@ -25,34 +25,35 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Pixels = NDArray[np.float32]
 
-PICTURES = (".exr", ".png")  # suffixes that `write_picture` supports
-LARGEST = 2**28  # maximum values of an image: 1 GiB as float32, four channels of 8192 x 8192
+PICTURES = (".exr", ".png")  # file name suffixes that `write_picture` supports
+LARGEST = 2**28  # largest number of values in an image, such as 8192 x 8192 RGBA, 1 GiB
 PNG_END = b"IEND\xaeB`\x82"  # the last chunk of a PNG file
-# Compared with zip, run-length encoding takes 0.6 of the time, and an eighth more bytes.
+# Run-length encoding takes 0.6 of the time of zip, and produces an eighth more bytes.
 FAST_EXR: dict[str, str | int] = {"oiio:ColorSpace": "lin_rec709_scene", "compression": "rle"}
-# Without a filter (libpng's 8), writing takes a tenth of the time, and a quarter more bytes.
+# Without a filter (libpng's value 8), writing takes a tenth of the time, and a file has a quarter
+# more bytes.
 FAST_PNG: dict[str, str | int] = {
     "oiio:ColorSpace": "srgb_rec709_scene",
     "png:compressionLevel": 1,
     "png:filter": 8,
 }
-NO_THREADS = {"threads": 1, "exr_threads": -1}  # disables OpenImageIO's and OpenEXR's threads
+NO_THREADS = {"threads": 1, "exr_threads": -1}  # disables threads of OpenImageIO and OpenEXR
 INCOMPLETE = "the file is incomplete; the disk may be full"
 
 
 class ImageWarning(UserWarning):
-    """An image is readable, but damaged, or some of its values are not numbers."""
+    """An image is readable, but is damaged or contains values that are not numbers."""
 
 
 def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
-    """Largest difference among each pixel's channels, relative if the reference exceeds 1.
+    """Largest difference in the channels of each pixel, relative if the reference exceeds 1.
 
-    The difference is infinite if a value is not finite.
+    The difference is infinite if a value of the pixel is not finite.
 
     >>> difference([[1.0, 0.5, 9.0]], [[1.0, 0.25, 10.0]]).tolist()
     [0.25]
     """
-    with np.errstate(invalid="ignore"):  # inf - inf
+    with np.errstate(invalid="ignore"):  # inf - inf is invalid
         change: Floats = np.subtract(image, reference, dtype=np.float64)
         change /= np.maximum(1.0, np.abs(reference))
     change[~np.isfinite(change)] = np.inf
@@ -60,15 +61,16 @@ def difference(image: ArrayLike, reference: ArrayLike) -> Floats:
     def larger(a: Floats, b: Floats) -> Floats:
         return np.where(np.abs(a) >= np.abs(b), a, b)
 
-    # Reduce channel by channel: for a short axis, NumPy's maximum takes five times as long.
+    # Channels are reduced one by one, because NumPy's maximum over a short axis takes five times as
+    # long.
     return reduce(larger, np.moveaxis(change, -1, 0))
 
 
 def difference_scale(difference_map: ArrayLike) -> float:
-    """Full scale for plotting a difference: the next of 1, 2, 5, 10, ... above almost all values.
+    """Full scale for a plot of differences: the least of 1, 2, 5, 10, ... above almost all values.
 
-    The scale is based on the 99th percentile, so that a few pixels at a rim do not darken the rest,
-    and is at least 1e-9, so that equal images have a scale. Non-finite values are ignored.
+    The scale is above the 99th percentile, so that a few pixels at a rim do not darken all other
+    pixels. The scale is at least 1e-9, also for equal images. Non-finite values are ignored.
 
         >>> difference_scale([0.0, 0.003, 0.0031, float("nan")])
         0.005
@@ -77,15 +79,15 @@ def difference_scale(difference_map: ArrayLike) -> float:
     positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
     percentile = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
     decade = int(np.floor(np.log10(percentile)))
-    # Parse decimals, because products would differ from the printed numbers in the last digit.
+    # Decimal numbers are parsed, because the last digits of products would differ.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
     return next((step for step in steps if percentile <= step), steps[-1])
 
 
 def read_image(path: AnyPath) -> Pixels:
-    """Read the pixels of an image file, row 0 at the top, without color transformation.
+    """Read the pixels of an image file, with row 0 at the top, without a color transformation.
 
-    Raises ImageError for more than LARGEST values, which even a small file can have. Issues an
+    Raises ImageError for more than LARGEST values, which even a small file can contain. Issues an
     ImageWarning if OpenImageIO reports an error, for example for a truncated JPEG.
     """
     import OpenImageIO as oiio
@@ -104,7 +106,7 @@ def read_image(path: AnyPath) -> Pixels:
 
 
 def open_image(path: AnyPath) -> oiio.ImageInput:
-    """Open an image file with OpenImageIO; raise ImageError if that fails."""
+    """Open an image file with OpenImageIO. Raises ImageError if the file cannot be opened."""
     import OpenImageIO as oiio
 
     try:
@@ -119,7 +121,7 @@ def open_image(path: AnyPath) -> oiio.ImageInput:
 
 
 def words(message: Callable[[], str]) -> str:
-    """A message of OpenImageIO on one line; bytes that are not UTF-8 are escaped.
+    """A message of OpenImageIO on one line. Bytes that are not UTF-8 are escaped.
 
     >>> words(lambda: b"channel \\xff is\\nmissing".decode())
     'channel \\\\xff is missing'
@@ -132,10 +134,10 @@ def words(message: Callable[[], str]) -> str:
 
 
 def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, str | int]) -> None:
-    """Write pixels to an image file in the format of `path`'s suffix.
+    """Write pixels to an image file in the format that the suffix of `path` names.
 
-    The last row is read back, because some writers do not report a full disk: OpenImageIO's PNG
-    writer, and writers that leave the last bytes in a buffer of the C library.
+    The last row is read back, because OpenImageIO's PNG writer does not report a full disk, nor do
+    writers that leave the last bytes in a buffer of the C library.
     """
     import OpenImageIO as oiio
 
@@ -158,25 +160,25 @@ def write_image(path: AnyPath, pixels: Pixels | Codes, attributes: Mapping[str, 
 
 
 def _is_complete(path: Path, pixels: Pixels | Codes) -> bool:
-    """Whether a written image file ends with the last row of the pixels."""
+    """Whether the last row of a written image file equals the last row of the pixels."""
     import OpenImageIO as oiio
 
     if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
-        return False  # do not read the file: libpng would print a message
+        return False  # libpng would print a message
     height, _, channels = pixels.shape
     file = oiio.ImageInput.open(str(path))
     last: NDArray[Any] | None = None
     if file:
         last = file.read_scanlines(height - 1, height, 0, 0, channels, oiio.UNKNOWN)
-    words(oiio.geterror)  # clear the error, which OpenImageIO would print when Python ends
+    words(oiio.geterror)  # clears an error that OpenImageIO prints when Python ends
     return last is not None and last.tobytes() == pixels[-1].tobytes()
 
 
 @contextmanager
 def without_threads() -> Iterator[None]:
-    """Encode in the caller's thread, for callers that write many images in parallel.
+    """Encode in the thread of the caller, for callers that write many images in parallel.
 
-    For small EXR files, handing a row to another thread takes longer than compressing it.
+    In a small EXR file, it takes longer to pass a row to another thread than to compress the row.
     """
     import OpenImageIO as oiio
 
@@ -191,20 +193,20 @@ def without_threads() -> Iterator[None]:
 
 
 def write_picture(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as EXR or PNG, by the suffix of `path`; see `write_exr`, `write_png`."""
+    """Write a linear image as EXR or PNG, as the suffix of `path` says."""
     check_output(path, endings=PICTURES)
     write = write_exr if Path(path).suffix.lower() == ".exr" else write_png
     write(path, image, metadata)
 
 
 def write_exr(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as 32-bit float EXR with Rec. 709 primaries, and metadata as text."""
+    """Write a linear image as 32-bit float EXR with Rec. 709 primaries and metadata as text."""
     pixels = np.ascontiguousarray(image, dtype=np.float32)
     write_image(path, pixels, FAST_EXR | _texts(metadata))
 
 
 def write_png(path: AnyPath, image: ArrayLike, metadata: Mapping[str, object]) -> None:
-    """Write a linear image as an eight-bit sRGB PNG, and metadata as text."""
+    """Write a linear image as an eight-bit sRGB PNG with metadata as text."""
     write_image(path, srgb_encoded(image), FAST_PNG | _texts(metadata))
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from mxeon.errors import InputError
 
 NOT_FINITE = ("NaN", "Infinity", "-Infinity")
-# Exceptions that reading JSON of unknown origin may raise.
+# Exceptions that may be raised when JSON from an unknown source is read.
 UNREADABLE = (
     ValueError,
     KeyError,
@@ -23,19 +23,20 @@ UNREADABLE = (
     cattrs.BaseValidationError,
 )
 T = TypeVar("T")
-Overrides: TypeAlias = dict[str, Any]  # cattrs' overrides, keyed by field
+Overrides: TypeAlias = dict[str, Any]  # overrides of cattrs by field name
 
 
 def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
-    """A converter between dataclasses and the types of JSON.
+    """A converter between dataclasses and values that JSON can represent.
 
-    `fields` has cattrs' overrides for each record whose JSON differs from its fields. Non-finite
-    numbers become the strings NOT_FINITE. `structure` may raise any of UNREADABLE.
+    `fields` has overrides of cattrs for each dataclass whose JSON differs from the fields.
+    Non-finite numbers become the strings NOT_FINITE. The method `structure` may raise any exception
+    in UNREADABLE.
     """
     converter = cattrs.Converter(
         forbid_extra_keys=True, unstruct_collection_overrides={tuple: list}
     )
-    # Require exact types, because Python accepts True as 1.
+    # Types must match exactly, because Python accepts True as the number 1.
     for kind, words in ((str, "a text"), (bool, "true or false"), (int, "a whole number")):
         converter.register_structure_hook(kind, _exactly(kind, words))
     converter.register_structure_hook(float, _number)
@@ -51,7 +52,7 @@ def strict_converter(fields: Mapping[Any, Overrides]) -> cattrs.Converter:
 
 
 def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> T:
-    """Convert JSON values to a dataclass; InputError names the first wrong or missing value."""
+    """Convert JSON values to a dataclass. An InputError names the first wrong or missing value."""
 
     def reason(error: BaseException, kind: type | None) -> str:
         return f"lacks {error}" if isinstance(error, KeyError) else str(error)
@@ -61,13 +62,13 @@ def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> 
     except UNREADABLE as error:
         first = cattrs.transform_error(error, format_exception=reason)[0]
         raise InputError(first) from None
-    if converter.unstructure(record) != value:  # e.g. a text was read as a list
+    if converter.unstructure(record) != value:  # such as a text read as a list
         raise InputError("it must have the structure that mxeon writes")
     return record
 
 
 def spelled(number: float) -> float | str:
-    """Convert a number for JSON; non-finite numbers become strings."""
+    """A number for JSON. Non-finite numbers are converted to strings."""
     if math.isfinite(number):
         return number
     return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"
@@ -84,7 +85,7 @@ def _array(value: object, _: type) -> NDArray[np.float64]:
 
 
 def _has_numbers(value: object) -> bool:
-    """Whether a value is a list of numbers, or of such lists."""
+    """Whether a value is a list of numbers, or a nested list of numbers."""
     return type(value) is list and all(type(e) in (int, float) or _has_numbers(e) for e in value)
 
 

@@ -15,30 +15,27 @@ from numpy.typing import ArrayLike, NDArray
 Floats = NDArray[np.float64]
 Codes = NDArray[np.uint8]
 
-SLOPE = 2.4 / 1.055  # largest slope of the decoding curve, which is at 1
-STEPS = 2**13  # steps of the lookup table in [0, 1]; each has at most two codes
-NOT_FINITE = (255, 0, 255)  # magenta, the code values of non-finite pixels
-FRESNEL = 0.04  # reflectance at normal incidence; subtracted, to reproduce base colors
-START = 0.8 - FRESNEL  # peak value above which compression starts
+SLOPE = 2.4 / 1.055  # largest slope of the decoding curve, at the value 1
+STEPS = 2**13  # steps of the lookup table in [0, 1], each with at most two codes
+NOT_FINITE = (255, 0, 255)  # magenta, for pixels that are not finite
+FRESNEL = 0.04  # reflectance at normal incidence, which is subtracted to reproduce base colors
+START = 0.8 - FRESNEL  # value of the largest channel above which compression starts
 DESATURATION = 0.15
 
 
 def srgb_decoded(image: ArrayLike) -> Floats:
-    """Linear values of sRGB values in [0, 1].
+    """Linear values of sRGB values in [0, 1], by the sRGB encoding of IEC 61966-2-1.
 
-    IEC 61966-2-1, the encoding of sRGB.
-
-        >>> srgb_decoded([0.0, 0.5, 1.0]).round(3).tolist()
-        [0.0, 0.214, 1.0]
+    >>> srgb_decoded([0.0, 0.5, 1.0]).round(3).tolist()
+    [0.0, 0.214, 1.0]
     """
     image = np.asarray(image, np.float64)
     return np.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
 
 
 def srgb_encoded(image: ArrayLike) -> Codes:
-    """Eight-bit sRGB code values of a linear image (..., 3), clipped; magenta if not finite.
-
-    IEC 61966-2-1, the encoding of sRGB.
+    """Eight-bit sRGB code values, by IEC 61966-2-1, of a linear image (..., 3), clipped to [0, 1].
+    Pixels that are not finite are magenta.
 
         >>> srgb_encoded([0.0, 0.18, 1.0]).tolist()
         [0, 118, 255]
@@ -47,7 +44,8 @@ def srgb_encoded(image: ArrayLike) -> Codes:
     finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
     linear = np.clip(image, np.float32(0.0), np.float32(1.0))
     linear[~finite] = 0.0
-    # Take the least code of the step, plus 1 above its threshold; mode "clip" skips bounds checks.
+    # The code is the least code of the step, plus 1 for a value above the threshold of the least
+    # code. The mode "clip" avoids checks of bounds.
     thresholds, least = _codes()
     codes: Codes = least.take((linear * np.float32(STEPS)).astype(np.intp), mode="clip")
     codes += linear >= thresholds.take(codes, mode="clip")
@@ -59,7 +57,8 @@ def srgb_encoded(image: ArrayLike) -> Codes:
 def _codes() -> tuple[NDArray[np.float32], Codes]:
     """The linear value at which each sRGB code ends, and the least code of each of STEPS steps.
 
-    No step contains two ends: even at 0, where ends are closest, the curve's slope is only 12.92.
+    No step contains two of these ends, because even at 0, where ends are closest, the slope of the
+    curve is only 12.92.
     """
     ends = srgb_decoded((np.arange(255) + 0.5) / 255.0).astype(np.float32)
     least = np.searchsorted(

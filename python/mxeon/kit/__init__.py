@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kit: tests of renderers that mxeon cannot run. Users submit the renderer's pictures."""
+"""The kit tests renderers that mxeon cannot run, by pictures that a user renders and submits."""

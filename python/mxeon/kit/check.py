@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check the pictures that a renderer made from the kit."""
+"""Check pictures that a renderer made from the scenes of the kit."""
 
 import json
 import platform
@@ -33,24 +33,25 @@ from mxeon.shaders.scene import sphere
 RENDERER = "renderer"
 LIBRARY = "its own library"
 SOFTWARE = ("numpy", "scipy", "OpenImageIO")
-# Keys of kit.json that must match exactly; the last digits of scenes depend on the exporting
-# machine.
+# Keys of kit.json that must match exactly. The key `scenes` is left out, because the last digits of
+# the scenes depend on the exporting machine.
 EXACT = ("camera", "sphere", "materials", "pictures")
 READABLE = "The picture is there, of the right size, linear float, and finite."
 CHANNELS = "RGB"
 LEVELS = 255  # largest eight-bit value
 ROUNDED = LEVELS * 2.0**-12  # largest rounding of a half float below 1, in eight-bit steps
 FLOATS = ("half", "float", "double")
-# Smooth shading has about as many distinct values as pixels; eight bits leave less than a quarter.
+# A smoothly shaded picture has about as many distinct values as pixels. After rounding to eight
+# bits, the number of distinct values is less than a quarter of that.
 DISTINCT = 4
 
 
 class Missing(ValueError):
-    """The picture's file does not exist."""
+    """The file of a picture does not exist."""
 
 
 class Unusable(ValueError):
-    """The picture cannot be judged; the message has the rule and the violation."""
+    """A picture cannot be judged, for a reason that the message states."""
 
 
 def check_kit(
@@ -61,17 +62,18 @@ def check_kit(
 ) -> Run:
     """Check the pictures in a kit's folder `renders/`, and return the run.
 
-    `claims` is a renderer's only model, so that pictures of other models are not needed, or "" for
-    EON and QON. The run's notes name the nearest models, first a model that all pictures show.
+    If the renderer has only one model, `claims` is the name of the model, and pictures of other
+    models are not needed. For a renderer with EON and QON, `claims` is "". The run's notes name the
+    nearest models. The first note names a model that all pictures show, if there is such a model.
     """
-    student_quantile()  # fail early without scipy
+    student_quantile()  # fails if scipy is missing
     if not renderer.strip() or not renderer.isprintable():
         raise InputError(f"renderer must be a name on one line; got {renderer!r}")
     folder = Path(folder)
     posed, depth = questions(claims), unit_sphere().depth
     needed = [view for view in views(_size(folder)) if any(each.includes(view) for each in posed)]
     place: dict[str, Any] = {"host": renderer, "library": LIBRARY}
-    images: dict[str, NDArray[np.float64]] = {}  # usable pictures
+    images: dict[str, NDArray[np.float64]] = {}  # usable pictures by name
     results: list[Result] = []
     pictures: list[Picture] = []
     for view in needed:
@@ -102,8 +104,8 @@ def check_kit(
             f"{folder / RENDERS}: none of the {len(needed)} pictures is there: make them as "
             f"{folder / 'README.md'} describes"
         )
-    # Answer the questions in order: a wrong light or encoding makes models indistinguishable, so a
-    # wrong setup prevents all other answers.
+    # Questions are answered in order, because a wrong light or encoding makes models
+    # indistinguishable. So a wrong setup prevents all other answers.
     notes, obstacle = [], NO_DIAGNOSIS
     for question in progress(posed):
         result, found = answer(question, needed, images, depth, place, obstacle)
@@ -112,7 +114,7 @@ def check_kit(
             obstacle = found
         if found.causes:
             notes.append(f"{question.title}: {words.diagnosis(found)}")
-    # If a model is wrong, find out whether all pictures show the same wrong model.
+    # If a model is wrong, all pictures may show the same wrong model.
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
     if wrong and (title := one_model(posed, needed, images, depth)):
         notes.insert(0, f"every picture of a rough material shows one model: {title}")
@@ -153,7 +155,7 @@ def _size(folder: Path) -> int:
     if type(size) is not int:
         raise InputError(f"{file}: size must be a whole number; got {size!r}: export it again")
     match kit.get("materials"):
-        case {LAMBERT.name: {"node": str(node)}}:  # any node is valid
+        case {LAMBERT.name: {"node": str(node)}}:  # any name is valid
             pass
         case _:
             node = ""
@@ -171,7 +173,7 @@ def _size(folder: Path) -> int:
 
 
 def read_render(folder: str | PathLike[str], view: View) -> NDArray[np.float64]:
-    """Read the picture of a view: linear float64, 0 off the sphere. Raises Missing or Unusable."""
+    """Linear float64 values of a view's picture, 0 off the sphere. Raises Missing or Unusable."""
     files = sorted(Path(folder).glob(f"{view.name}.*"))
     if not files:
         raise Missing(f"{view.name}.exr: must be in {folder}; got no such file")
@@ -209,7 +211,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
         channels = _channels(spec.channelnames)
     except UnicodeDecodeError:
         raise Unusable("must have names of channels in UTF-8") from None
-    # Read only these channels: even a small file may have thousands.
+    # Only red, green and blue are read, because even a small file may have thousands of channels.
     read = [image.read_image(0, 0, each, each + 1, oiio.FLOAT) for each in channels]
     pixels = [each for each in read if each is not None]
     reason = on_one_line(image.geterror)
@@ -220,7 +222,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
 
 
 def _channels(names: Sequence[str]) -> list[int]:
-    """Indices of red, green and blue: without a layer, or of the only layer with all three."""
+    """Indices of the channels R, G and B without a layer, or of the only layer with R, G and B."""
     layers: dict[str, dict[str, int]] = {}
     for index, name in enumerate(names):
         layer, _, channel = name.rpartition(".")
@@ -233,7 +235,7 @@ def _channels(names: Sequence[str]) -> list[int]:
 
 
 def _check_depth(values: NDArray[np.float64]) -> None:
-    """Refuse eight-bit values: few distinct values, all multiples of 1 / 255 up to 1."""
+    """Refuse a picture with few distinct values that are all multiples of 1 / 255 up to 1."""
     distinct = len(np.unique(values))
     steps = values * LEVELS
     rounded = values.max() <= 1.0 and np.abs(steps - np.rint(steps)).max() <= ROUNDED

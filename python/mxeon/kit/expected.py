@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expected values of a picture of the kit, and how far a correct renderer may deviate."""
+"""Expected values of a picture, and the largest deviations that a correct renderer may have."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -13,32 +13,32 @@ from mxeon.models.core.quadrature import albedo_dir_quadrature
 from mxeon.models.table import Model
 from mxeon.shaders.scene import VIEW, Scene, local_directions, sphere
 
-# Least cosine of view and light at judged pixels: near the rim and the terminator, the value
-# depends on the position within a pixel. In pictures of 64 pixels or more, judged pixels lie on the
-# sphere.
+# Least cosine of view and light at judged pixels. Pixels near the rim and the terminator are not
+# judged, because values there depend on the position within a pixel. In pictures of 64 pixels or
+# more, all judged pixels are entirely on the sphere.
 CUT = 0.2
-# Relative rounding of half floats, which have 11 bits, and their smallest step.
+# Relative rounding of half floats, which have 11 bits, and the smallest step between half floats.
 HALF_ROUNDING, HALF_STEP = 2.0**-11, 2.0**-24
 
-# Albedos are integrated at these cosines, 1/128 apart, and interpolated linearly. The albedo's
-# second derivative is below 2, so the error is below 2e-5.
+# Albedos are integrated at COSINES, which are 1/128 apart, and interpolated linearly. The second
+# derivative of the albedo is below 2, so the error is below 2e-5.
 COSINES = np.linspace(CUT / 2.0, 1.0, 117)
 INTERPOLATION = 2e-5
-QUADRATURE_NODES = 16  # the models' albedos have an error of 1e-9
+QUADRATURE_NODES = 16  # albedos of the models have an error of 1e-9
 
-# Nodes of the two-point Gauss rule, exact for cubics, in half pixels.
+# Nodes of the two-point Gauss rule, which is exact for cubics, in units of half a pixel.
 GAUSS = 1.0 / np.sqrt(3.0)
 
 
 @dataclass(frozen=True)
 class Expected:
-    value: np.ndarray  # (N, 3), mean over each pixel
+    value: np.ndarray  # (N, 3), mean value over each pixel
     slack: np.ndarray  # (N, 3), deviation due to pixel centers, mesh depth and half floats
 
 
 @lru_cache(maxsize=16)
 def judged(scene: Scene) -> NDArray[np.bool_]:
-    """Mask of the pixels at which both cosines are at least CUT."""
+    """Mask of the pixels at which the cosines of view and light are at least CUT."""
     points = sphere(scene.size)
     lit = points.normal[..., 2] >= CUT
     if scene.light is not None:
@@ -47,11 +47,11 @@ def judged(scene: Scene) -> NDArray[np.bool_]:
 
 
 def expected(row: Model, view: View, depth: float) -> Expected:
-    """Expected values of a view. The surface may be up to `depth` below the unit sphere."""
+    """Expected values of a view if the surface is at most `depth` below the unit sphere."""
     place = _centers(view)
     value = pixel_means(row, view)
     center = _values(row, view, place)
-    # A point of a triangle has the normal of a sphere point that is farther from the axis.
+    # A point of a triangle has the normal of a point of the sphere that is farther from the axis.
     mesh = _values(row, view, place / (1.0 - depth))
     slack = np.abs(value - center) + np.abs(mesh - center) + HALF_ROUNDING * value + HALF_STEP
     return Expected(value, slack + (INTERPOLATION if view.scene.light is None else 0.0))
@@ -84,7 +84,7 @@ def _values(row: Model, view: View, place: NDArray[np.float64]) -> NDArray[np.fl
 
 @lru_cache(maxsize=64)
 def _albedo_table(row: Model, material: Material) -> NDArray[np.float64]:
-    """Directional albedo at COSINES, (N, 3), in closed form if known, else by quadrature."""
+    """Directional albedo at COSINES, (N, 3), in closed form if known, otherwise by quadrature."""
     parameter = [material.roughness] if row.parameter else []
     if row.albedo_dir:
         return row.albedo_dir(COSINES, material.color, *parameter)

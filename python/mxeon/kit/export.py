@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of the kit: documents, scenes, a mesh, and a page of instructions."""
+"""Write the files of the kit: documents, scenes, a mesh and a page of instructions."""
 
 import json
 import math
@@ -37,11 +37,11 @@ class KitNode:
     category: str = OREN_NAYAR
     definition: str = f"ND_{OREN_NAYAR}"  # nodedef
     flagged: bool = True  # whether the node has the input energy_compensation
-    folders: tuple[str, ...] = ()  # library and folders with its definition
+    folders: tuple[str, ...] = ()  # library and folders with the node's definition
 
 
 def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "eonlib") -> KitNode:
-    """Find a BSDF node with color and roughness in MaterialX, a library or other definitions."""
+    """Find a BSDF node with color and roughness in MaterialX, in `library` or in `definitions`."""
     needed = {"color": "color3", "roughness": "float"}
     data = load_library(library, None, definitions)
     reason = ""
@@ -61,10 +61,10 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
 
 
 def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = KitNode()) -> Path:
-    """Write the kit and return its README.md. Replace an earlier kit, but keep submitted pictures.
+    """Write the kit and return the path of README.md. Pictures in an earlier kit are kept.
 
-    Raises InputError for a size out of range, and for a folder that has no name, holds other files
-    than a kit, or has a link instead of one of the kit's files.
+    Raises InputError if the size is out of range, if the folder has no name or contains other files
+    than a kit, or if a link has the name of a file of the kit.
     """
     read = files_read([], Policy(), node.folders).values()
     check_output(folder, read, replaced=["*", "*/*"], apart=True)
@@ -97,8 +97,8 @@ def export_kit(folder: str | PathLike[str], size: int = USUAL, node: KitNode = K
 def description(pictures: Sequence[View], size: int, node: str) -> dict[str, Any]:
     """The content of kit.json.
 
-    `format` increases when a key changes or is removed. A distant light has `direction`, the unit
-    vector toward it, and `irradiance`; an environment has `radiance`.
+    The number `format` increases when a key changes or is removed. A distant light has `direction`,
+    the unit vector toward the light, and `irradiance`. An environment has `radiance`.
     """
     scenes = {view.scene.name: view.scene for view in pictures}
     return {

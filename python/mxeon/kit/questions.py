@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The checks of a renderer's pictures, called questions.
+"""The checks of a renderer's pictures, which are called questions.
 
 A question passes if the pictures equal the model up to noise, pixel size and mesh, and a wrong
 variant with the same noise fails.
@@ -33,25 +33,26 @@ from mxeon.kit.views import (
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
-# Models that noise hides: EON's quartic approximation differs from EON by at most 1e-3.
+# Models that noise makes indistinguishable. EON's quartic approximation differs from EON by at most
+# 1e-3.
 TOO_NEAR = ("eon_approx",)
-Images: TypeAlias = Mapping[str, NDArray[np.float64]]  # usable pictures by the view's name
+Images: TypeAlias = Mapping[str, NDArray[np.float64]]  # usable pictures by name of the view
 
 
 # --- faults of a picture --------------------------------------------------------------------------
-# Wrong encoding, orientation or scale can be found independently of the model on Lambert under a
-# distant light, where all models have equal values.
+# A wrong encoding, orientation or scale can be found independently of the model in the picture of
+# Lambert under a distant light, where all models have equal values.
 
 MISFIT = 0.02  # largest relative rms error, without noise, of a picture that a fault explains
-SAME_SCALE = 0.005  # factors closer to 1 are due to noise or a mesh
+SAME_SCALE = 0.005  # a factor closer to 1 is due to noise or a mesh
 
 
 def _without_tone_mapping(image: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The inverse of x / (1 + x), whose values are below 1; infinity for other values."""
+    """The inverse of x / (1 + x) for values below 1, and infinity for other values."""
     return np.divide(image, 1.0 - image, out=np.full_like(image, np.inf), where=image < 1.0)
 
 
-# Keys of faults in `mxeon.conformance.words.DEFECTS`, and the functions that undo them.
+# Keys of faults in `mxeon.conformance.words.DEFECTS`, and functions that undo the faults.
 FAULTS = (
     ("scaled", lambda image: image),
     ("srgb", lambda image: srgb_decoded(np.clip(image, 0.0, None))),
@@ -81,7 +82,7 @@ def fault(
         if abs(factor - 1.0) > SAME_SCALE:
             return found(key, factor)
         return results.NO_DIAGNOSIS if key == "scaled" else found(key)
-    # A picture is clipped if many pixels share the largest value, but their expected values differ.
+    # A picture is clipped if many pixels have the largest value but different expected values.
     top = image[mask] >= image[mask].max() - 1e-6
     clipped = top.sum() > 20 and np.ptp(model.value[top]) > 0.02
     return found("clipped" if clipped else "unknown")
@@ -90,7 +91,7 @@ def fault(
 def _fit(
     values: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> tuple[float, float]:
-    """Best factor between values and model, and the error beyond noise; infinite without a fit."""
+    """Best factor between values and model, and the relative error beyond noise, or infinity."""
     if not np.isfinite(values).all() or (values * model.value).sum() <= 0.0:
         return 0.0, np.inf
     factor = (values * model.value).sum() / (model.value**2).sum()
@@ -109,8 +110,8 @@ class ModelDistance:
     """Distance of a known model or defect from the pictures of a question."""
 
     title: str
-    distance: float  # rms of the tiles' mean errors, in units of pi f cos or of albedo
-    ratio: float  # see `mxeon.kit.noise.ratio`; at most 1 if the pictures agree
+    distance: float  # rms of the mean errors of tiles, in units of pi f cos or of albedo
+    ratio: float  # `mxeon.kit.noise.ratio`, at most 1 if the pictures show the model
 
 
 def candidates(views: Sequence[View], images: Images, depth: float) -> list[ModelDistance]:
@@ -118,7 +119,7 @@ def candidates(views: Sequence[View], images: Images, depth: float) -> list[Mode
     rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(view.scene.light for view in views):
-        # Drop models that differ only in the albedo.
+        # Of models that differ only in the albedo, only the last is kept.
         rows = tuple({row.brdf_of: row for row in rows}.values())
     ranking = []
     for row in rows:
@@ -127,13 +128,14 @@ def candidates(views: Sequence[View], images: Images, depth: float) -> list[Mode
         ranking.append(ModelDistance(row.title, rms, ratio(errors)))
     distinct: dict[float, ModelDistance] = {}
     for each in sorted(ranking, key=lambda model: model.distance):
-        # At roughness 1, models of roughness and of its square coincide; keep the first.
+        # At roughness 1, a model of roughness equals a model of squared roughness. The first is
+        # kept.
         distinct.setdefault(each.distance, each)
     return list(distinct.values())
 
 
 def nearest(ranking: Sequence[ModelDistance]) -> results.Diagnosis:
-    """The nearest model, and models that the pictures do not distinguish from it."""
+    """The nearest model, and all models that the pictures do not distinguish from that model."""
     causes = [results.Cause(results.Kind.MODEL, ranking[0].title, rms=ranking[0].distance)]
     also = tuple(each.title for each in ranking[1:] if each.ratio <= 1.0)
     if ranking[0].ratio > 1.0:
@@ -152,14 +154,14 @@ DERIVATION = (
 
 @dataclass(frozen=True)
 class Question:
-    """A check of one or more pictures, and its negative control."""
+    """A check of one or more pictures, with a negative control."""
 
     key: str
     claim: str
     materials: tuple[Material, ...]
-    lit: bool  # distant light; False for an environment, for which rasterizers have other formulas
+    lit: bool  # True for a distant light, False for an environment
     variant: str  # describes the negative control
-    wrong: Callable[[View], NDArray[np.float64]]  # the negative control's values (N, 3)
+    wrong: Callable[[View], NDArray[np.float64]]  # values of the negative control, (N, 3)
     model: str = ""  # required model; "" for the model of each material
 
     @property
@@ -177,7 +179,7 @@ class Question:
 
 
 def control(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
-    """Values of a model times a factor, for a negative control."""
+    """A function for the values of a negative control: a model times a factor."""
     return lambda view: factor * pixel_means(reference.diffuse_model(name), view)
 
 
@@ -201,11 +203,11 @@ CLAIMS = ("eon", "qon", "fon", "lambert")
 
 
 def questions(claim: str = "") -> tuple[Question, ...]:
-    """Questions for a renderer that claims one model, or, for "", that supports the flag."""
+    """Questions for a renderer with the model `claim` or, if `claim` is "", with EON and QON."""
     if not claim:
         return QUESTIONS
     assert_known("claims", claim, CLAIMS)
-    # Choose materials with the model's roughness.
+    # The materials `rough` have the roughness of the model.
     rough = (FALSE,) if claim == "qon" else (TRUE, HALF)
     variant = "roughness is dropped", control("lambert"), claim
     if claim == "lambert":
@@ -223,7 +225,7 @@ def questions(claim: str = "") -> tuple[Question, ...]:
 def one_model(
     posed: Sequence[Question], views: Sequence[View], images: Images, depth: float
 ) -> str:
-    """Title of the model that explains all pictures of rough materials; "" if none does."""
+    """Title of the model that explains all pictures of rough materials, or "" if no model does."""
     rough = [each for each in posed if each.key == "model"]
     chosen = [view for view in views if any(each.includes(view) for each in rough)]
     if any(view.name not in images for view in chosen):
@@ -240,9 +242,9 @@ def answer(
     place: Mapping[str, Any],
     obstacle: results.Diagnosis,
 ) -> tuple[results.Result, results.Diagnosis]:
-    """Answer a question: its result, and the model or fault that the pictures show.
+    """The result of a question, and the model or fault that the pictures show.
 
-    An `obstacle` prevents the answer, and becomes the reason of the result.
+    If there is an `obstacle`, the question is not answered, and the obstacle is the reason.
     """
     chosen = [view for view in views if question.includes(view)]
     place = {"check": question.key, "claim": question.claim, "subject": question.title, **place}
@@ -286,7 +288,7 @@ def _tiles(
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the errors, to which the difference of `wrong` values from the model is added."""
+    """Tiles of the pictures' errors, plus the difference of `wrong` values from the model."""
     wrong = wrong or [model.value for model in models]
     found = []
     for view, model, other in zip(views, models, wrong, strict=True):

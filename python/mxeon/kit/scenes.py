@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The scenes of the kit in USD's text form, written without USD, and the unit sphere as a mesh.
+"""The scenes of the kit as USD text, written without USD, and a mesh of the unit sphere.
 
-The mesh is for renderers without an exact sphere. Each vertex is on the sphere and equals its
-normal, so the interpolated normal at a point has the direction of the point.
+The mesh is for renderers without an exact sphere. Each vertex is on the sphere and equals the
+normal at that vertex, so the interpolated normal at a point has the direction of the point.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from mxeon.kit.views import View
 
-SUBDIVISIONS = 5  # 20,480 triangles of about two degrees; one more subdivision quarters the error
+SUBDIVISIONS = 5  # 20,480 triangles of about two degrees; another step quarters the error
 
 MESH = """#usda 1.0
 (
@@ -135,13 +135,13 @@ class Mesh:
 
 
 def unit_sphere() -> Mesh:
-    """The unit sphere: an icosahedron whose triangles are repeatedly split into four."""
+    """The unit sphere as an icosahedron in which each triangle is repeatedly split into four."""
     golden = (1.0 + np.sqrt(5.0)) / 2.0
     rectangle = np.array([[0, 1, golden], [0, -1, golden], [0, 1, -golden], [0, -1, -golden]])
     vertices = np.concatenate([np.roll(rectangle, shift, axis=1) for shift in range(3)])
     mesh = Mesh(_on_sphere(vertices), _faces(vertices))
     for _ in range(SUBDIVISIONS):
-        # Split each triangle into four, and move the middles of its edges onto the sphere.
+        # Each triangle is split into four, and the midpoints of edges are moved onto the sphere.
         edges = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]]
         pairs, place = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
         middles = _on_sphere(mesh.vertices[pairs].sum(axis=1))
@@ -153,7 +153,7 @@ def unit_sphere() -> Mesh:
 
 
 def _faces(vertices: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Triangles of vertices at distance 2, oriented outward."""
+    """Triangles between vertices at a distance of 2, oriented outward."""
     near = np.isclose(np.linalg.norm(vertices[:, None] - vertices, axis=-1), 2.0)
     triples = combinations(range(len(vertices)), 3)
     faces = np.array(
@@ -185,12 +185,12 @@ def mesh_layer(mesh: Mesh) -> str:
 
 
 def scene_layer(view: View, node: str, flagged: bool) -> str:
-    """The USD scene of a picture; `flagged` nodes have the input energy_compensation."""
+    """The USD scene of a picture. A node with the input energy_compensation is `flagged`."""
     material, scene = view.material, view.scene
     if scene.light is None:
         light = DOME.format(radiance=scene.environment)
     else:
-        # Build a right-handed frame with z along the direction.
+        # The frame is right-handed, with z along the direction of the light.
         z = np.array(scene.light)
         x = np.cross(np.eye(3)[np.abs(z).argmin()], z)
         x /= np.linalg.norm(x)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Views of the kit: each material under one or more lights."""
+"""Views of the kit, which show each material under one or more lights."""
 
 from dataclasses import dataclass, replace
 
@@ -8,14 +8,14 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
 COLOR = (0.2, 0.5, 0.8)  # different channels reveal a wrong power of the color
 
-# Widths of pictures in pixels. With fewer pixels, corners of judged pixels may miss the sphere;
-# more pixels gain nothing.
+# Widths of pictures in pixels. In smaller pictures, corners of judged pixels may be outside the
+# sphere. Larger pictures have no advantage.
 SMALLEST, USUAL, LARGEST = 64, 128, 2048
 
 
 @dataclass(frozen=True)
 class Material:
-    """A rough diffuse material, named by one lower-case word."""
+    """A rough diffuse material. The name is one lower-case word."""
 
     name: str
     color: tuple[float, float, float]
@@ -24,7 +24,7 @@ class Material:
 
     @property
     def model(self) -> str:
-        """Name of the model that the node must have with this flag."""
+        """Name of the model that the node must have for this value of `energy_compensation`."""
         return "eon" if self.energy_compensation else "qon"
 
 
@@ -60,7 +60,7 @@ PICTURES = (
 
 
 def views(size: int) -> tuple[View, ...]:
-    """All views, `size` pixels wide and high."""
+    """All views, as pictures of `size` x `size` pixels."""
     if not SMALLEST <= size <= LARGEST:
         raise InputError(f"size must lie in [{SMALLEST}, {LARGEST}]; got {size}")
     return tuple(replace(view, scene=replace(view.scene, size=size)) for view in PICTURES)

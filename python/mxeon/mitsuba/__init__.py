@@ -21,12 +21,12 @@ PLUGINS = {
 def register() -> None:
     """Register the BSDFs of `PLUGINS`, such as `eon`, for Mitsuba's current variant.
 
-    `eon` and `fon` have the textures `reflectance` and `roughness`; `qon` has `reflectance` and
-    `sigma`, in radian. `varnished` and `dielectric_over_eon` (MaterialX's `layer`) add the numbers
-    `alpha` and `ior` to the textures of `eon`. All inputs are in `mitsuba.traverse` and
-    differentiable. Sampling of `eon` is exact for the mean of the reflectance's channels; coated
-    BSDFs also sample visible facets; `fon` and `qon` sample the cosine. All BSDFs reflect only on
-    the front.
+    `eon` and `fon` have the textures `reflectance` and `roughness`, and `qon` has `reflectance` and
+    `sigma`, in radians. `varnished` and `dielectric_over_eon` (MaterialX's `layer`) add the numbers
+    `alpha` and `ior` to the textures of `eon`. All inputs are differentiable and are listed by
+    `mitsuba.traverse`. Samples of `eon` are exact for the mean of the reflectance's channels.
+    Coated BSDFs also sample visible facets. Samples of `fon` and `qon` are cosine-weighted. All
+    BSDFs reflect only on the front.
     """
     mi = mitsuba()
     for name, kind in PLUGINS.items():

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dr.Jit's functions under the names of the array API standard, and curves as piecewise cubics.
+"""Dr.Jit's functions under the names of the array API standard, and tables of piecewise cubics.
 
-A Dr.Jit number is an array of values. A direction is an `Array3f`, components on the first axis.
-With these names, Dr.Jit evaluates the formulas of `mxeon.models`.
+A Dr.Jit number is an array of values. A direction is an `Array3f` with components on the first
+axis. Dr.Jit can evaluate the formulas of `mxeon.models` because of the standard names.
 
-A curve over (0, 1] is a cubic in each of 16 equal parts of each octave. The bits of a float32 give
-the index of the part without a logarithm. Octaves resolve curves at any scale, such as the albedo
-of facets, which depends on cosine / alpha.
+A curve over (0, 1] is tabulated as a cubic in each of 16 equal parts of each octave. The index of a
+part is computed from the bits of a float32, without a logarithm. Octaves resolve a curve at any
+scale, which the albedo of facets needs because of a dependence on cosine / alpha.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ import numpy as np
 from mxeon.models.core.arrays import FUNCTIONS, OTHERS, Array, Namespace
 from mxeon.models.core.chebyshev import chebyshev_nodes
 
-OCTAVES, PARTS = 126, 16  # octaves from the smallest normal float32 to 1; parts per octave
-LOWER_BITS = 19  # bits of a float32 below those that give octave and part
+OCTAVES, PARTS = 126, 16  # octaves from the smallest normal float32 to 1, and parts per octave
+LOWER_BITS = 19  # lower bits of a float32, which do not affect octave and part
 MIDDLE = 1.5  # middle of the octave that starts at 1
 
 
 def register_functions() -> None:
-    """Make the formulas accept Dr.Jit numbers."""
+    """Let the formulas of `mxeon.models` accept Dr.Jit numbers."""
     drjit = import_module("drjit")
 
     def log1p(x: Array) -> Array:
@@ -54,13 +54,13 @@ def octave_cells(x: Array) -> tuple[Array, Array]:
     x = drjit.maximum(x, 2.0**-OCTAVES)
     clamped = drjit.minimum(drjit.detach(x), 1.0 - 2.0**-24)
     bits = drjit.reinterpret_array(integer, single(clamped))
-    # Reciprocal of the octave's start, a power of two, from the exponent bits.
+    # The reciprocal of the octave's start, a power of two, is computed from the exponent bits.
     scale = type(x)(drjit.reinterpret_array(single, 0x7F000000 - (bits & 0x7F800000)))
     return (bits >> LOWER_BITS) - PARTS, drjit.fma(x, scale, -MIDDLE)
 
 
 def octave_cubics(curve: Callable[[Array], Array]) -> Array:
-    """Coefficients of a cubic through four points, for each part, (parts, 4), constant first."""
+    """Coefficients of a cubic through four points in each part, (parts, 4), constant first."""
     places = 1.0 + (np.arange(PARTS)[:, np.newaxis] + np.sort(chebyshev_nodes(4))) / PARTS
     octaves = 2.0 ** np.arange(-OCTAVES, 0)[:, np.newaxis, np.newaxis]
     powers = np.linalg.inv(np.vander((places - MIDDLE).ravel(), 4, True).reshape(-1, 4, 4))
@@ -68,7 +68,7 @@ def octave_cubics(curve: Callable[[Array], Array]) -> Array:
 
 
 def gather_cubic(table: Array, cell: Array, x: Array) -> Array:
-    """Value at x of a cell's cubic; each row of the table has the four coefficients of a cell."""
+    """Value at x of the cubic of a cell. Each row of the table has the coefficients of a cell."""
     drjit = import_module("drjit")
     c = drjit.gather(type(vector([x] * 4)), table, cell)
     return cast(Array, drjit.fma(drjit.fma(drjit.fma(c.w, x, c.z), x, c.y), x, c.x))

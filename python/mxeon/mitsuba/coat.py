@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Coats over EON as BSDFs of Mitsuba: a dielectric and a varnish; see `mxeon.models.coat`.
+"""BSDFs of Mitsuba for EON under a dielectric and under a varnish, as in `mxeon.models.coat`.
 
-The albedo of the interface depends only on a cosine. A change of `alpha` or `ior` tabulates the
-albedo as a cubic per part of an octave, in float64. The coefficients have gradients by `alpha` and
-`ior`.
+The albedo of the interface depends only on a cosine. After a change of `alpha` or `ior`, the albedo
+is tabulated in float64 as a cubic in each part of an octave. The coefficients have gradients with
+respect to `alpha` and `ior`.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ STEP = 1e-4  # step for finite differences of the coefficients
 
 
 class CoatPlugin(EonPlugin):
-    """EON under a dielectric. Sampling chooses each lobe in proportion to its albedo."""
+    """EON under a dielectric. A lobe is sampled with a probability in proportion to the albedo."""
 
-    # Default, minimum and maximum of the parameters that are constant over the surface.
+    # Default, minimum and maximum of each parameter that is constant over the surface.
     numbers: ClassVar[dict[str, tuple[float, ...]]] = {
         "alpha": (0.05, *ALPHAS),
         "ior": (1.5, *IORS),
@@ -63,7 +63,7 @@ class CoatPlugin(EonPlugin):
         self.tabulate()
 
     def tabulate(self) -> None:
-        """Compute the table, linearized in each parameter that has a gradient."""
+        """Compute the table as a linear function of each parameter that has a gradient."""
         numbers = self._clamped("alpha"), self._clamped("ior")
         values = [float(np.array(self.dr.detach(each)).item()) for each in numbers]
         self.coat, self.average = self.interface(*values), dielectric_avg(numbers[1])
@@ -120,7 +120,7 @@ class CoatPlugin(EonPlugin):
         return glossy, context.is_enabled(flags.DiffuseReflection, 1)
 
     def _share(self, context: Mitsuba, si: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
-        """Probability of sampling the facets: their share of the albedo."""
+        """Probability of sampling the facets, which is the facets' share of the albedo."""
         is_glossy, is_diffuse = self._enabled(context)
         if not is_glossy or not is_diffuse:
             return self.mi.Float(is_glossy)
@@ -133,31 +133,31 @@ class CoatPlugin(EonPlugin):
         return reflected, reflected + (1.0 - reflected) * eon_albedo(fon_loss(mu), rho, amount)
 
     def _facets(self, view: Mitsuba, light: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """BRDF of perfectly reflecting facets, and the cosine wo . wh = wi . wh."""
+        """BRDF of perfectly reflecting facets, and the cosine wo . wh, which equals wi . wh."""
         wh, c = ggx.half_vector(self._vector(view), self._vector(light))
         visibility = ggx.visibility(view.z, light.z, self._clamped("alpha"))
         return ggx.ndf(wh, self._roughness()) * visibility, c
 
     def _interface_curves(self, mu: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Missing energy of the facets, (1 - E_ss) / E_ss, and albedo of the dielectric, at mu."""
+        """Missing energy of the facets, (1 - E_ss) / E_ss, and albedo of the interface, at mu."""
         missing, reflected = self._curves(mu)
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
 
     def _curves(self, mu: Mitsuba) -> list[Mitsuba]:
-        """Curves of the interface at mu: from the table; in scalar variants, from polynomials."""
+        """Curves of the interface at mu, from the table or (in scalar variants) from polynomials."""
         if not self._compiled:
             return list(self.coat.at(mu))
         cell, x = octave_cells(mu)
         return [gather_cubic(self.table, self.count * cell + k, x) for k in range(self.count)]
 
     def _rows(self, values: list[float]) -> Array:
-        """Table of the curves, cell by cell, followed by the means of a varnish."""
+        """Table of the curves in the order of the cells, followed by the means of a varnish."""
         coat = self.interface(*values)
         rows = [octave_cubics(partial(_curve, coat, k)) for k in range(self.count)]
         return np.append(np.stack(rows, axis=1), getattr(coat, "means", ()))
 
     def _slopes(self, values: list[float], k: int) -> Array:
-        """Derivatives of the table by parameter `k`: finite differences that stay in its range."""
+        """Derivatives of the table by parameter `k`, by finite differences inside the valid range."""
         low, high = (ALPHAS, IORS)[k]
         ends = min(values[k] + STEP, high), max(values[k] - STEP, low)
         upper, lower = (self._rows([*values[:k], end, *values[k + 1 :]]) for end in ends)
@@ -167,11 +167,11 @@ class CoatPlugin(EonPlugin):
         return self._clamped("alpha"), self._clamped("alpha")
 
     def _clamped(self, name: str) -> Mitsuba:
-        """The parameter clamped to its range, which an optimizer may have left."""
+        """The parameter, clamped to the valid range, which an optimizer may have left."""
         return self.dr.clip(getattr(self, name), *self.numbers[name][1:])
 
     def _vector(self, w: Mitsuba) -> Mitsuba:
-        """A direction as the formulas expect it: a NumPy array in scalar variants."""
+        """A direction for the formulas, which is converted to a NumPy array in scalar variants."""
         return w if self._compiled else np.array([w.x, w.y, w.z])
 
     @property
@@ -184,7 +184,7 @@ def _curve(coat: Any, k: int, mu: Array) -> Array:
 
 
 class VarnishPlugin(CoatPlugin):
-    """EON below a rough dielectric interface. Samples come from visible facets or the cosine."""
+    """EON below a rough dielectric interface. Visible facets or a cosine lobe are sampled."""
 
     interface: Callable[[float, float], Any] = staticmethod(formulas.constant_varnish)
     count = 3

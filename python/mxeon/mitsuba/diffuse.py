@@ -18,7 +18,7 @@ from mxeon.mitsuba.arrays import register_functions
 from mxeon.models import diffuse as formulas
 from mxeon.models import sampling
 
-# Any object of Mitsuba or Dr.Jit; their types depend on the variant.
+# Any object of Mitsuba or Dr.Jit. The types of these objects depend on the variant.
 Mitsuba: TypeAlias = Any
 
 # LLVM 15 and older crash on the code that Dr.Jit 1.5 generates for a minimum.
@@ -26,9 +26,9 @@ OLDEST_LLVM = (16, 0, 0)
 
 
 def register_plugin(mi: Mitsuba, name: str, kind: type) -> None:
-    """Register a BSDF for the current variant; the class `kind` provides the methods."""
+    """Register a BSDF for the current variant. The methods are those of the class `kind`."""
     members: dict[str, Any] = {"__init__": _initialize, "mi": mi, "dr": import_module("drjit")}
-    # Mitsuba's classes cannot be combined with other base classes, so the members are copied.
+    # Mitsuba's classes do not permit other base classes, so the members are copied.
     for each in reversed(kind.__mro__):
         members |= {n: member for n, member in vars(each).items() if not n.startswith("__")}
     mi.register_bsdf(name, type(name, (mi.BSDF,), members))
@@ -59,7 +59,7 @@ def _initialize(self: Mitsuba, properties: Mitsuba) -> None:
 
 
 class RoughDiffusePlugin:
-    """Methods of a Mitsuba BSDF with a reflectance and one parameter in [0, `largest`]."""
+    """Methods of a Mitsuba BSDF with a reflectance and a parameter in [0, `largest`]."""
 
     mi: Mitsuba
     dr: Mitsuba
@@ -130,20 +130,20 @@ class RoughDiffusePlugin:
         return self._draw(si.wi, choice, u, rho, amount), kind, 0
 
     def _enabled(self, context: Mitsuba) -> tuple[bool, ...]:
-        """Whether each component is evaluated."""
+        """For each component of the BSDF, whether the context enables that component."""
         return (context.is_enabled(self.mi.BSDFFlags.DiffuseReflection),)
 
     def _front(self, context: Mitsuba, view: Mitsuba, light: Mitsuba, active: Mitsuba) -> Mitsuba:
-        """Whether the BSDF is evaluated: a component is enabled, and both directions are above."""
+        """Whether a component is enabled, and wo and wi are above the horizon."""
         enabled = any(self._enabled(context))
         return self.mi.Bool(active) & enabled & (view.z > 0.0) & (light.z > 0.0)
 
     def _clipped(self, amount: Mitsuba) -> Mitsuba:
-        """The parameter clamped to its range, which an optimizer may have left."""
+        """The parameter, clamped to the valid range, which an optimizer may have left."""
         return self.dr.clip(amount, 0.0, self.largest)
 
     def _gray(self, si: Mitsuba, active: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Mean of the reflectance's channels, for which sampling is exact, and the parameter."""
+        """Mean of the reflectance's channels, for which samples are exact, and the parameter."""
         rho = self.dr.mean(self.reflectance.eval(si, active))
         return self.dr.clip(rho, 0.0, 1.0), self._clipped(self.amount.eval_1(si, active))
 
@@ -153,7 +153,7 @@ class RoughDiffusePlugin:
         return type(color)(*map(self.mi.Float, channels))
 
     def _density(self, view: Mitsuba, light: Mitsuba, rho: Mitsuba, amount: Mitsuba) -> Mitsuba:
-        """Density of `_draw` in 1/sr: mu_i / pi."""
+        """Density of the samples in 1/sr, which is mu_i / pi."""
         return light.z * self.dr.inv_pi
 
     def _draw(
@@ -164,13 +164,13 @@ class RoughDiffusePlugin:
 
 
 class FonPlugin(RoughDiffusePlugin):
-    """FON; samples follow the cosine."""
+    """FON with cosine-weighted samples."""
 
     brdf = staticmethod(formulas.fon_brdf_mu)
 
 
 class QonPlugin(RoughDiffusePlugin):
-    """QON; samples follow the cosine."""
+    """QON with cosine-weighted samples."""
 
     parameter = "sigma"
     largest = 0.5 * np.pi
@@ -178,7 +178,7 @@ class QonPlugin(RoughDiffusePlugin):
 
 
 class EonPlugin(RoughDiffusePlugin):
-    """EON; samples follow BRDF times cosine exactly, see `mxeon.models.sampling`."""
+    """EON with samples whose density is BRDF times cosine, as in `mxeon.models.sampling`."""
 
     brdf = staticmethod(formulas.eon_brdf_mu)
 
@@ -189,7 +189,7 @@ class EonPlugin(RoughDiffusePlugin):
     def _draw(
         self, view: Mitsuba, choice: Mitsuba, u: Mitsuba, rho: Mitsuba, amount: Mitsuba
     ) -> Mitsuba:
-        """Direction sampled from one of EON's four parts, with the method of `eon_draw`."""
+        """Direction sampled from one of EON's four parts, by the method of `eon_draw`."""
         dr, number = self.dr, self.mi.Float
         mu_o, S_o = view.z, dr.safe_sqrt(view.x * view.x + view.y * view.y)
         lower, upper, multiple, flat = sampling.eon_integrals(mu_o, S_o, rho, amount)
@@ -203,7 +203,8 @@ class EonPlugin(RoughDiffusePlugin):
         mu_upper = number(sampling.eon_upper_cosine(v**0.4, mu_o, limit))
         mu_multiple = number(sampling.eon_multiple_cosine(dr.cbrt(v)))
         mu = dr.select(is_lower, mu_lower, dr.select(is_toward, mu_upper, mu_multiple))
-        # Azimuth from wo: toward wo in the lower and upper parts, uniform in the multiple part.
+        # Directions of the lower and upper parts are on wo's side, and directions of the multiple
+        # part have a uniform azimuth.
         S, (sine, cosine) = dr.safe_sqrt((1.0 - mu) * (1.0 + mu)), dr.sincos(2.0 * dr.pi * u2)
         ahead = dr.select(is_toward, 2.0 * dr.safe_sqrt(u2 * (1.0 - u2)), cosine)
         aside = dr.select(is_toward, 2.0 * u2 - 1.0, sine)
@@ -213,7 +214,8 @@ class EonPlugin(RoughDiffusePlugin):
             dr.select(is_flat, number(each), other)
             for each, other in zip(point, (S * ahead, S * aside, mu), strict=True)
         )
-        # Rotate from the frame with wo in the xz-plane.
+        # In the frame used so far, wo is in the xz-plane. The direction is rotated to the local
+        # frame.
         length = dr.select(S_o > 0.0, S_o, 1.0)
         c, s = dr.select(S_o > 0.0, view.x / length, 1.0), view.y / length
         return self.mi.Vector3f(c * x - s * y, s * x + c * y, z)

@@ -239,7 +239,7 @@ def chunk_of(file: str) -> str:
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
 
-# Checks in FIRST run first, because they detect most mutants. Checks in LAST take longest.
+# Checks in FIRST detect most mutants. Checks in LAST take longest and so run last.
 FIRST = (
     *("value", "environment", "layering", "denser", "output", "radiance", "sphere_mean"),
     *("film_visible", "combination", "combined_throughput"),
@@ -283,7 +283,7 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def differs_from_glsl(mutant: Mutant) -> bool:
-    """Whether a mutated OSL function or constant differs from GLSL and fails the check `languages`."""
+    """Whether a mutated OSL function or constant differs from GLSL, as the check `languages` sees."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (functions.parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
@@ -311,7 +311,7 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects: title, whether it combines other subjects, shader text, and a function with checks."""
+    """Subjects: title, flag for combinations of subjects, shader text, and function with checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
     # Films are checked before transmission, because transmission runs the same code without a film.
