@@ -66,7 +66,7 @@ def pytest_make_parametrize_id(val):
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
-    """Trace lines only in tests of the models, because these must cover all lines of the models."""
+    """Trace lines only in tests of the models. These tests must cover all lines of the models."""
     with nullcontext() if "models" in item.path.parts else untraced():
         return (yield)
 

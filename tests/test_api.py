@@ -198,7 +198,7 @@ MISTAKES = {
 
 @pytest.mark.whole
 def test_a_type_checker_passes_the_gate_and_finds_mistakes_in_it(tmp_path):
-    """Like a user's file, the example is checked strictly and without the checkout's settings."""
+    """mypy checks the example like a user's file: strictly, without the checkout's settings."""
     wrong = GATE
     for right, (mistake, _) in MISTAKES.items():
         wrong = wrong.replace(right, mistake)

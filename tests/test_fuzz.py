@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""No case from a sample of the fuzzer's cases has a fault."""
+"""A sample of the fuzzer's cases runs without a fault."""
 
 import os
 import subprocess

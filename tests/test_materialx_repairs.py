@@ -68,7 +68,7 @@ def is_one_of(found, causes):
 
 @pytest.fixture(scope="module")
 def failing(tmp_path_factory):
-    """Check, subject and host of each row on a page that fails or differs without the repair."""
+    """Check, subject and host of each page's rows that fail or differ without a repair."""
     with available("gl"):
         on_gl = {(e.check, e.subject) for e in every_node(tmp_path_factory, STOCK).results}
     return [

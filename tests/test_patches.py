@@ -23,7 +23,7 @@ MATERIALX = patches("materialx")
 FILES = {page: files for page in ISSUES if (files := patches_of(page))}
 INSTALLED = Path(mx.__file__).parent
 MODULES = packages_folder() / "node_modules"
-# Hosts that install the files of an upstream project, by the project.
+# Upstream projects, and the host that installs the files of each project.
 HOSTS = {"three.js": "three", "blender": "cycles"}
 
 

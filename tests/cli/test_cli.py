@@ -48,7 +48,7 @@ def test_check_passes_writes_a_report_and_answers_as_the_pages_show(tmp_path, ca
     files = {"report.html", "results.json", "junit.xml", ".journal.lock"}
     names = {path.name for path in (tmp_path / "report").iterdir()}
     assert names == files | {"pictures", "journal", "upstream"}
-    # Stock MaterialX fails but is only compared, so the verdict is the verdict on eonlib.
+    # Stock MaterialX fails, but only the results with eonlib decide the verdict.
     found = json.loads((tmp_path / "report" / "results.json").read_text())
     assert (found["verdict"], found["compared"]) == ("passed", ["stock"])
     failed = [each["library"] for each in found["results"] if each["verdict"] == "failed"]

@@ -84,7 +84,8 @@ def test_two_libraries_are_asked_the_same(run, stock):
     results = [[each for each in of.results if each.host == "gl"] for of in (stock, run)]
     checks = [{(each.check, each.subject) for each in of} for of in results]
     own = {"eon_diffuse_bsdf", SHADER_FUNCTIONS, *INVERSIONS}
-    unlike = ("picture", "release")  # checks of different documents, and of stock MaterialX's files
+    # `picture` judges other documents, and `release` judges the files of stock MaterialX.
+    unlike = ("picture", "release")
     eonlib = {row for row in checks[1] if row[1] not in own and row[0] not in unlike}
     assert eonlib < checks[0]
     found = {check for check, _ in checks[0] - eonlib} - {*unlike}
@@ -130,7 +131,7 @@ def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
 @pytest.mark.parametrize(
     "check, methods, verdict, reason",
     [
-        # MaterialX's sum over directions applies masking twice; only eonlib's lookups do not.
+        # MaterialX's sum over directions applies masking twice; eonlib's lookups avoid this error.
         ("anisotropic_albedo", Methods("fis", searched=True), NOT_RUN, "library stock: has no genglsl/environment to search"),
         # Stock MaterialX does not compensate lost energy by the exact average albedo.
         ("environment", Methods("prefilter"), FAILED, ""),

@@ -39,7 +39,7 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
 ):
     """The run checks a single document, because pictures use no random samples.
 
-    Checks that the results of the fixtures do not include must pass.
+    Checks that the fixtures do not run must pass.
     """
     found = verdicts(mxeon.check(EXAMPLES[:1], ["gl"], [library], nodes=["all"], seed=seed))
     known = verdicts({"eonlib": run, "stock": stock}[library])
@@ -52,9 +52,9 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
 SCHLICK, DIELECTRIC = (
     f"{name}_bsdf, scatter_mode R" for name in ("generalized_schlick", "dielectric")
 )
-# Checks, subjects and seeds whose samples lie at the end of a domain: the first cells of an albedo
-# table, a Schlick curve below 0, a critical angle, mix weights near 0, and a lobe with a fitted
-# albedo of 0.
+# Checks, subjects and seeds with samples at the end of a domain: the first cells of an albedo
+# table, a Schlick curve below 0, a critical angle, lobes that are almost never sampled, and a lobe
+# with a fitted albedo of 0.
 RARE = (
     ("methods", SCHLICK, 4),
     ("layer", SCHLICK, 12),

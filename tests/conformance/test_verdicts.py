@@ -181,8 +181,8 @@ def test_stock_materialx_fails_where_its_pages_say_and_nowhere_else(stock):
     found = {(e.subject, e.check): e.verdict for e in ran if e.verdict != PASSED}
     rows = [(title, check) for title, checks in STOCK.items() for check in checks]
     assert found == {row: DIFFERS if row in FREE else FAILED for row in rows}
-    # `domain` is not run after an error inside the inputs' ranges. `film_brushed` is not run if the
-    # film has two alphas.
+    # `domain` is not run after an error inside the inputs' ranges. `film_brushed` is not run if
+    # `film_visible` already differs.
     skipped = {(e.subject, e.check) for e in stock.results if e.verdict == NOT_RUN}
     assert {title for title, check in skipped if check not in ("domain", "film_brushed")} < {
         *ABSENT

@@ -286,7 +286,7 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
-    """The test loads the release again, as happens after more libraries than the cache holds."""
+    """A run also loads the release anew after more libraries than the cache holds."""
     file, old, new, *wanted = CHANGED["alpha"]
     installed()
     read_library.cache_clear()

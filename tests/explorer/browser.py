@@ -96,6 +96,6 @@ def show(page, **patch):
 
 
 def judged(page, side, badge):
-    """Wait for the given badge on the verdict of a side, which depends on values read back."""
+    """Wait until the verdict on a side, which depends on pixels read back, has the given badge."""
     text = "side => document.querySelector(`.side.${side} .verdict strong`).textContent"
     until(page, f"([side, badge]) => ({text})(side) === badge", [side, badge])

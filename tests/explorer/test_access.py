@@ -30,7 +30,7 @@ def documents(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def checked(browser, documents):
-    """Explorer page with axe-core loaded. The page's security policy, which blocks it, is off."""
+    """Explorer page with axe-core. The page's security policy is off, so that axe-core may run."""
     needs_modules()
     with opened(browser, documents, bypass_csp=True) as page:
         page.add_script_tag(path=MODULES / "axe-core" / "axe.min.js")

@@ -49,7 +49,7 @@ VALID = {
     "category": ("dielectric_bsdf",),
     "inputs": (FILM | {"thinfilm_ior": 1.4}, {"tint_R": 0.5}),
     "lobe": (Lobe(factor=uncompensated),),
-    "compensate": (False,),  # True would be slow
+    "compensate": (False,),  # compensation would be slow
     "curve": (SCHLICK_CURVE,),
     "at": (lambda cosine, ior, **colors: schlick(cosine, **colors),),
     "brdf": (lambda wo, wi, rho, *parameter: rho * wi[..., :1],),
@@ -169,7 +169,7 @@ def answer(function, values):
 
 
 def call(function, values):
-    """Call a function with arguments given by name, including positional-only arguments."""
+    """Call a function with arguments that are given by name, whatever the parameters' kinds."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     named = {name: value for name, value in values.items() if name not in more}

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from mxeon.shaders.library import examples_folder
 
-# Forbidden in generated shaders, unless the document's own permitted code calls this function.
+# A call that generated shaders must not contain, unless the document's own permitted code does.
 POISON = "poison()"
 # Content of files outside the document's folder, which no output may contain.
 CANARY = "canary-5f1e"

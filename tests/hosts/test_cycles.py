@@ -103,7 +103,8 @@ def test_tangents_point_eastward(host):
     picture = host.picture(emit("out = color(normalize(dPdu)) * emission();"), SMALL)
     expected = tangents(points.normal[points.mask])
     error = np.abs(picture[points.mask] - expected).max(axis=1)
-    across = np.linalg.norm(points.normal[points.mask][:, ::2], axis=1)  # 0 at the poles
+    # The length is 0 at the poles.
+    across = np.linalg.norm(points.normal[points.mask][:, ::2], axis=1)
     assert (error * across * points.normal[points.mask][:, 2]).max() <= 2.0 * CYCLES_NORMAL
 
 

@@ -49,7 +49,7 @@ def values(tmp_path_factory):
             (target / "kernel" / name).touch()
         (target / FILE).parent.mkdir()
         (target / FILE).write_bytes((folder / FILE).read_bytes())
-        # The option removes `a/intern/cycles/kernel` from the paths in the patch.
+        # `strip=4` removes `a/intern/cycles/kernel` from the paths in the patch.
         apply(target, *patches, strip=4)
         command = [program("g++"), "-std=c++17", f"-I{target}", PROGRAM, "-o", target / "program"]
         output(*command)

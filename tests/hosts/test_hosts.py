@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hosts that evaluate direction pairs match the models, identify themselves, and change no text."""
+"""Hosts that evaluate direction pairs match the models, identify themselves, and edit no shader."""
 
 import os
 from dataclasses import replace

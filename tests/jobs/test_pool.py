@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""If a worker of the pool fails, only its own item is lost, also in batches of documents."""
+"""If a worker of the pool fails, only the worker's item is lost, also in batches of documents."""
 
 import os
 import signal

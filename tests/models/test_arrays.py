@@ -224,9 +224,9 @@ def sampled(function):
     for name in [name for name, value in switches.items() if isinstance(value, dict)]:
         switches |= switches.pop(name)  # the keys of a mapping become separate arguments
     value = arguments.call(inspect.unwrap(function), arguments.base(inspect.unwrap(function)))
-    # Results of samplers have no color channels.
+    # Samplers return no colors, so their color inputs have one number per row.
     channels = 0 if isinstance(value, tuple) else np.ndim(value)
-    # Samplers of interfaces still take a color.
+    # Samplers of interfaces nevertheless need color channels.
     channels = channels or function.__name__.startswith(INTERFACES)
     for name in COLORS & set(arrays) if channels else ():
         if arrays[name].ndim < 2 and (name.startswith(TINTS) or "conductor" in function.__name__):
@@ -253,7 +253,7 @@ def scalar(value, axes=1):
 
 
 def moved(function, arrays, switches, name):
-    """Values of `scalar` by offset, for each component of an array, which the offset shifts."""
+    """Values of `scalar` by offset, when the offset is added to each component of an array."""
     array = arrays[name]
     rows, size = len(array), array[0].size
     several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))

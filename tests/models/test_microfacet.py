@@ -348,7 +348,7 @@ def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle
         return D * c * 2.0 * mu_i / (smith[0] * mu_i + smith[1] * mu)
 
     def share(t, low, high):
-        # The reflectance starts like a square root at the lower limit.
+        # Near the lower limit, the reflectance grows like a square root.
         c = low + (high - low) * t * t * (3.0 - 2.0 * t)
         return models.fresnel_dielectric(c, ior) * around(c) * 6.0 * t * (1.0 - t) * (high - low)
 

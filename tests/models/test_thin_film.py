@@ -31,7 +31,7 @@ HEIGHTS = 1.3e-3  # amount by which the sum of the sensitivities' heights exceed
 ORDERS = 1e-8  # error of the summed interference orders, for cosines above 0.05
 TRANSFER = 1e-12  # relative difference from the Python package tmm
 # Documented errors of XYZ colors, for dielectrics and for metals. XYZ_ALL includes all interference
-# orders, XYZ_TWO only two.
+# orders, and XYZ_TWO includes only two.
 XYZ_ALL, XYZ_TWO = (0.012, 0.017), (0.016, 0.07)
 CURVE = 1e-4  # error of the polynomial of degree 48 for the reflectance curve
 # Substrates by index of refraction and extinction: diamond, glass, water, dark and bright metal.
@@ -66,7 +66,10 @@ def amplitude(above, below):
 
 
 def grid():
-    """Cosine, film thickness, film index, substrate index, extinction; shape (5, 4, 26, 8) each."""
+    """Cosine, film thickness, refractive indices of film and substrate, extinction.
+
+    Each array has the shape (5, 4, 26, 8).
+    """
     ior, extinction = np.array(SUBSTRATES).T.reshape(2, -1, 1, 1, 1)
     thickness, index = np.linspace(0.0, 2000.0, 26)[:, None], np.array([1.0, 1.33, 1.6, 2.3])
     cosine = np.linspace(0.05, 1.0, 8)

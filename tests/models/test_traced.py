@@ -64,7 +64,7 @@ def inside(row):
 
 
 def at_ends(row, function):
-    """Calls with all inputs at an end of their ranges, or with one input if rows may differ."""
+    """Calls with all inputs at an end of their ranges, and with one input if rows may differ."""
     middle, ends = inside(row), {}
     for each in row.parameters:
         low, high, _ = RANGES[each.quantity]

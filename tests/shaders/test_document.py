@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents in UTF-8 are read. Others are refused in one line with place, rule and value."""
+"""Documents in UTF-8 are read. Other documents are refused with one line: place, rule, value."""
 
 import re
 
@@ -48,7 +48,7 @@ VALUES = (
     ({"energy_compensation": "x"}, 'Invalid value: <input name="energy_compensation"'),
 )
 
-# Input values that MaterialX accepts although the model is undefined there, and the message.
+# Input values that MaterialX accepts outside the model's domain, and part of the warning.
 MODEL = "where its model is defined; got"
 OUTSIDE = (
     ({"color": "0.5, -0.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, -0.1, 0.5'),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Materials with lobes below the surface are recognized, and rendering these materials warns."""
+"""Materials with lobes below the surface are recognized, and rendering them causes a warning."""
 
 from dataclasses import replace
 

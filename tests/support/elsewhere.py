@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the parts of mxeon that need no engine, while POSIX modules and functions are removed.
+"""Runs the parts of mxeon that need no engine, with POSIX modules and functions removed.
 
 The program imports every module, then runs each command in the working folder. With the Python
 option `-X warn_default_encoding`, opening a file in the platform's encoding is an error.

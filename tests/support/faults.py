@@ -62,7 +62,7 @@ def meet(folder):
 
 
 def need(item):
-    """Value of the environment variable that the item names, or raise NotRun if it is unset."""
+    """Return the environment variable that the item names, or raise NotRun if there is none."""
     if item not in os.environ:
         raise NotRun(f"{item}: missing")
     return os.environ[item]

@@ -210,9 +210,9 @@ MITSUBA_BTDF = 64 * ROUNDING_32 / 0.3
 # 15 roundings. MITSUBA_WEIGHT: a sample's weight is a quotient of two such values, off by 3.6e-7.
 MITSUBA_EVAL = 3e-7
 MITSUBA_WEIGHT = 1e-6
-# Relative error of a dielectric over EON, where it exceeds MITSUBA_EVAL. The 24 roundings belong to
-# the facets' distribution (a fourth power and a square), to two squares in Fresnel's equations, to
-# the visibility, and to sums of the curves. The measured error is 1.0e-6.
+# Relative error of a dielectric over EON, where this error exceeds MITSUBA_EVAL. The 24 roundings
+# belong to the facets' distribution (a fourth power and a square), to two squares in Fresnel's
+# equations, to the visibility, and to sums of the curves. The measured error is 1.0e-6.
 MITSUBA_COAT = 24 * ROUNDING_32
 # Additional relative error of the density of a dielectric over EON. The fraction of samples that
 # the dielectric reflects is computed from an albedo, whose relative error is 2e-7 from the curve
