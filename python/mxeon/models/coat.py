@@ -22,8 +22,8 @@ high; for an index of refraction of 1.5 and rho 0.2, it is 1.04 to 1.84 times to
 - `alpha`: GGX roughness of the interface, in [0.01, 1]; one number for all directions.
 - `ior`: Index of refraction of the interface, in [1, 4]; one number for all directions.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 
 For constant `alpha` and `ior`, the albedo and the energy compensation depend only on the viewer's
 cosine. Both are integrated at Chebyshev nodes and interpolated.

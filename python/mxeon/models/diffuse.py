@@ -17,8 +17,8 @@ Result (..., C): BRDF in 1/sr, which is at least 0 and has no upper bound at gra
 error is below 1e-14 times the larger of 1 / pi and the largest |s / t| for the same mu_o and mu_i.
 Albedos of FON and QON (...) are for unit reflectance; they have to be multiplied by rho.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 
 Functions that validate no arguments have the names and the arguments of the shader functions in
 `genglsl/lib/eon.glsl` and `genglsl/sampling/oren_nayar_family.glsl`. They expect the channels of

@@ -17,8 +17,8 @@ because the values of this node come from a file.
   function.
 - `temperature` (...): In kelvin, in [1, 1e9].
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -245,10 +245,10 @@ SECOND = 6.62607015e-34 * 299792458.0 / 1.380649e-23
 NANOMETER = 1e-9  # one nanometer in meters
 LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # weights of the linear Rec. 709 channels in Y
 
-# Cubic polynomials for the chromaticity of a black body from 1667 K to 25000 K, highest power first.
-# The coordinate x is a polynomial in 1000 K / T; the rows of KANG_X are for temperatures below and
-# above 4000 K. The coordinate y is a polynomial in x; the rows of KANG_Y are for temperatures below
-# 2222 K, from 2222 K to 4000 K, and above 4000 K.
+# Cubic polynomials for the chromaticity of a black body from 1667 K to 25000 K; the highest power
+# comes first. The coordinate x is a polynomial in 1000 K / T; the rows of KANG_X are for
+# temperatures below and above 4000 K. The coordinate y is a polynomial in x; the rows of KANG_Y are
+# for temperatures below 2222 K, from 2222 K to 4000 K, and above 4000 K.
 KANG_X = (
     (-0.2661239, -0.2343589, 0.8776956, 0.179910),
     (-3.0258469, 2.1070379, 0.2226347, 0.240390),

@@ -1,49 +1,57 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Importance sampling: a sampler is a pair of functions, x_sample(...) -> wi, pdf and x_pdf(...).
+"""Importance sampling by pairs of functions, x_sample and x_pdf.
 
-Arguments come in the order `wo`, `wi`, `u`, `roughness`; functions omit arguments that they do not need.
+x_sample(...) returns `wi` and `pdf`. x_pdf(...) returns the `pdf` of a given `wi`.
+Arguments have the order `wo`, `wi`, `u`, `roughness`. A function omits arguments that it does not
+need.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
-- `wi` (..., 3): Direction to the light, a unit vector. If samples may lie below the horizon, those with z < 0
-  are wasted: their weight is 0.
+- `wi` (..., 3): Direction to the light, a unit vector. A sample with z < 0 is wasted, which means
+  that its weight is 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1).
-- `roughness` (...): In [0, 1]; at least 0.01 for Zeltner's sheen. For GGX (..., 2) or (): alpha along tangent +x
-  and bitangent.
-- `rho` (...): Gray reflectance for which the sampling of EON is exact, in [0, 1]; one number for each direction.
-  Three numbers for three samples of one `wo` might be meant as a color, and are rejected.
-- `pdf` (...): Density in solid angle, 1/sr.
+- `roughness` (...): In [0, 1]; Zeltner's sheen raises a smaller roughness to 0.01. For GGX, alpha
+  along tangent +x and bitangent, (..., 2) or ().
+- `rho` (...): Gray reflectance for which the sampling of EON is exact, in [0, 1]; one number for
+  each direction. Three numbers for three samples of one `wo` are rejected, because they might be
+  meant as a color.
+- `pdf` (...): Density per solid angle, in 1/sr.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 
-**EON** is sampled exactly, from two random numbers, without tables or iteration. On the unit disk below the
-hemisphere, with `wo` turned to azimuth 0, S = sqrt(1 - mu^2) and q = r S_o, EON's BRDF at unit reflectance is A / pi
-times the sum of four nonnegative parts:
+**EON** is sampled from two random numbers without tables or iteration. Let `wo` be turned to
+azimuth 0, x the component of `wi` along wo's azimuth, x+ = max(x, 0), S = sqrt(1 - mu^2) and
+q = r S_o. Then EON's BRDF at unit reflectance is A / pi times the sum of four nonnegative parts,
+which can be integrated over the unit disk below the hemisphere:
 
-| part     | value                                   | integral over the disk, over pi            |
+| part     | value                                   | integral over the disk, divided by pi      |
 |----------|-----------------------------------------|--------------------------------------------|
 | lower    | q x+ (1 / mu_o - 1), where mu_i < mu_o  | (2 / (3 pi)) q (1 - mu_o) (1 - S_o^3)/mu_o |
 | upper    | q x+ (1 / mu_i - 1), where mu_i >= mu_o | (2 / pi) q K(theta_o)                      |
 | multiple | r H(mu_i) H(mu_o) / (c1 - c2)           | r H(mu_o)                                  |
 | flat     | 1 + q x                                 | 1                                          |
 
-with K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The integrals sum to 1 + c1 r, which is 1 / A:
-docs/note.md, section 3, has the proof. Each part is sampled by inverting its distribution. The inverses for `flat` and
-`lower` are closed forms; those for `multiple` and `upper` have no parameters and are fitted. The returned density is
-the exact sum of the parts. The sampled directions follow each part with a relative error of at most 1.3e-5, and so the
-sum too: its error is a mean of the parts' errors with nonnegative weights.
+Here K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The sum of the four integrals is
+1 + c1 r, which is 1 / A (proof in docs/note.md, section 3). Each part is sampled by inverting its
+distribution. The inverse distributions of `flat` and `lower` are closed forms. The inverse
+distributions of `multiple` and `upper` have no parameters and are approximated by polynomials. The
+returned density is the exact sum of the parts. The true density of the samples has a relative error
+of at most 1.3e-5 for each part, and so for the sum, because the error of the sum is a weighted mean
+of the parts' errors.
 
-**Linearly transformed cosines** are fitted to EON. With `wo` turned to azimuth 0, a direction `wh` sampled from a
-clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
+**Linearly transformed cosines** (LTC) approximate EON. With `wo` turned to azimuth 0, a direction
+`wh` sampled from a clamped cosine is mapped by M = [[a, 0, b], [0, c, 0], [d, 0, 1]]:
 
     wi = M wh / |M wh|,      p(wi) = p(wh) |M wh|^3 / det M
 
-CLTC samples only the part of the cosine that M maps above the horizon, d x + z >= 0; the excluded part is a lune.
-Zeltner's sheen itself is such a lobe, M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]. M keeps z, so no sample is wasted,
-and value times cosine divided by density is color E(mu_o) for every sample.
+Clipped LTC (CLTC) samples only the part of the cosine that M maps above the horizon, where
+d x + z >= 0. The excluded part is a lune. Zeltner's sheen is itself a transformed cosine, with
+M = [[1/a, 0, -b/a], [0, 1/a, 0], [0, 0, 1]]. Because this M keeps z, no sample is wasted, and value
+times cosine divided by density is color E(mu_o) for every sample.
 
-**GGX** is sampled by visible normals. If space is stretched so that the microfacets form a hemisphere, these normals
-are half vectors of the stretched `wo` and a direction sampled uniformly on a spherical cap.
+**GGX** is sampled by visible normals. If space is stretched so that the microfacets form a
+hemisphere, a visible normal is the half vector of the stretched `wo` and a direction sampled
+uniformly on a spherical cap.
 """
 
 from __future__ import annotations
@@ -60,7 +68,9 @@ from mxeon.models.sheen import zeltner_lobe, zeltner_matrix
 
 @any_array
 def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Uniform direction on the hemisphere, z = u[..., 0], and its density: [Portsmouth2025], Listing 4.
+    """Uniform direction on the hemisphere, with z = u[..., 0], and its density.
+
+    [Portsmouth2025], Listing 4.
 
     >>> wi, pdf = uniform_sample([0.8, 0.0])
     >>> wi.round(12), round(float(pdf), 6)
@@ -73,7 +83,7 @@ def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def uniform_pdf(wi: ArrayLike) -> Array:
-    """Density of `uniform_sample` at `wi`, 1/(2 pi).
+    """Density of `uniform_sample` at `wi`, which is 1/(2 pi).
 
     >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
     0.159155
@@ -83,7 +93,7 @@ def uniform_pdf(wi: ArrayLike) -> Array:
 
 @any_array
 def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Direction, z > 0, sampled in proportion to z, and its density: [Portsmouth2025], Eq. (21).
+    """Direction with z > 0 sampled in proportion to z, and its density: [Portsmouth2025], Eq. (21).
 
     >>> wi, pdf = cosine_sample([0.36, 0.0])
     >>> wi.round(12), round(float(pdf), 6)
@@ -96,7 +106,7 @@ def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def cosine_pdf(wi: ArrayLike) -> Array:
-    """Density of `cosine_sample` at `wi`, z / pi.
+    """Density of `cosine_sample` at `wi`, which is z / pi.
 
     >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
     0.254648
@@ -105,43 +115,43 @@ def cosine_pdf(wi: ArrayLike) -> Array:
 
 
 def checked_draw(wo: ArrayLike, u: ArrayLike, **numbers: ArrayLike) -> list[Array]:
-    """Checked arguments of a sampler as float64 arrays whose shapes broadcast."""
+    """Validated arguments of a sampler as float64 arrays whose shapes broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "u": arguments.checked_pairs("u", u)}
     return broadcastable(vectors, arguments.checked_all(numbers))
 
 
 def checked_pdf(wo: ArrayLike, wi: ArrayLike, **numbers: ArrayLike) -> list[Array]:
-    """Checked arguments of a density as float64 arrays whose shapes broadcast."""
+    """Validated arguments of a density as float64 arrays whose shapes broadcast."""
     vectors = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     return broadcastable(vectors, arguments.checked_all(numbers))
 
 
 def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
-    """Both random numbers, checked, as float64 arrays of shape (...)."""
+    """Both random numbers, validated, as float64 arrays of shape (...)."""
     u = arguments.checked_pairs("u", u)
     return u[..., 0], u[..., 1]
 
 
 def uniform_direction(u1: Array, rest: Array, u2: Array) -> Array:
-    """Direction of `uniform_sample`; `rest` is 1 - u1."""
+    """Direction of `uniform_sample`; `rest` is 1 - u1 without a loss of digits."""
     return around(u1, root(rest * (1.0 + u1)), u2)
 
 
 def around(mu: Array, S: Array, u2: Array) -> Array:
-    """Direction with cosine `mu` and sine `S` at the azimuth 2 pi u2."""
+    """Direction whose polar angle has the cosine `mu` and the sine `S`, at the azimuth 2 pi u2."""
     xp, phi = array_namespace(u2), 2.0 * np.pi * u2
     return stack_xyz(S * xp.cos(phi), S * xp.sin(phi), mu)
 
 
 def stack_xyz(x: Array, y: Array, z: Array) -> Array:
-    """Vectors with the components x, y, z, which broadcast, on the last axis."""
+    """Vectors with the components x, y, z on the last axis; the components broadcast."""
     xp = array_namespace(x, y, z)
     shape = np.broadcast_shapes(*(tuple(each.shape) for each in (x, y, z)))
     return xp.stack([xp.broadcast_to(each, shape) for each in (x, y, z)], axis=-1)
 
 
 def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
-    """Cosine and sine of wo's azimuth, which is 0 along the normal; sine of wo's polar angle."""
+    """Cosine and sine of wo's azimuth, and sine of wo's polar angle; a normal wo has azimuth 0."""
     xp, sine = array_namespace(wo), arrays.hypot(wo[..., 0], wo[..., 1])
     tilted = sine > 0.0
     length = xp.where(tilted, sine, 1.0)
@@ -156,8 +166,8 @@ def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
 
 LEAST_COSINE = 2.0**-53  # smallest cosine that `eon_sample` returns
 
-# Coefficients fitted by tools/fits/eon_sampling.py, for random numbers in [0, 1]. The relative error of the density is
-# at most 1.27e-5 for MULTIPLE and 5.7e-6 for UPPER.
+# Coefficients of polynomials in random numbers in [0, 1], from tools/fits/eon_sampling.py. The
+# relative error of the density is at most 1.27e-5 for MULTIPLE and 5.7e-6 for UPPER.
 MULTIPLE = (
     -0.1221923217,
     0.3674909842,
@@ -180,12 +190,13 @@ UPPER = (
 def eon_sample(
     wo: ArrayLike, u: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0
 ) -> tuple[Array, Array]:
-    """Direction sampled in proportion to EON times its cosine, and its density.
+    """Direction sampled in proportion to EON times the cosine, and its density.
 
     `wi` (..., 3): Unit vectors, z >= 2^-53. `pdf` (...): `eon_pdf` of `wi`, in 1/sr. Accuracy: the
-    true density of `wi` differs from `pdf` by a relative error below 1.3e-5. A weight computed with
-    the true density is thus within 1.3e-5 of the albedo, with a relative variance below 1.7e-10.
-    See docs/sampling.md; the model is [Portsmouth2025], Eqs. (16) and (19).
+    relative difference between the true density of `wi` and `pdf` is below 1.3e-5. So a sample
+    weight computed with the true density would be within 1.3e-5 of the albedo, and its relative
+    variance would be below 1.7e-10. docs/sampling.md explains the method; EON is defined in
+    [Portsmouth2025], Eqs. (16) and (19).
 
         >>> wi, pdf = eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.0)
         >>> wi.round(6), round(float(pdf), 6)
@@ -201,18 +212,18 @@ def eon_sample(
     cosine, sine, S_o = azimuth_frame(wo)
     mu_o, S_o = arrays.at_most(wo[..., 2], 1.0), arrays.at_most(S_o, 1.0)
     wi = rotate_z(eon_draw(mu_o, S_o, u1, u2, rho, roughness), cosine, sine)
-    # A sample may fall on the horizon, where the density is 0 and the weight would be 0/0.
+    # A sample exactly on the horizon would have density 0 and weight 0/0, so z is raised.
     wi = stack_xyz(wi[..., 0], wi[..., 1], array_namespace(wi).maximum(wi[..., 2], LEAST_COSINE))
     return wi, eon_density_mu(*cosines(wo, wi), rho, roughness)
 
 
 @any_array
 def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0) -> Array:
-    """Density of `eon_sample` at `wi`: EON times the cosine, divided by its integral.
+    """Density of `eon_sample` at `wi`, which is f cos(theta_i) / E(theta_o) for EON.
 
-    Result (...): 1/sr. At rho = 1 it is `eon_brdf` at reflectance 1, times the cosine of `wi`.
-    Accuracy: relative error below 1e-14. At rho = 0, where f and E in f cos(theta_i) / E(theta_o)
-    vanish, the density is the limit, which is FON's. [Portsmouth2025], Eqs. (16), (19) and (28).
+    Result (...): 1/sr. At rho = 1, E is 1, so the density is `eon_brdf` times the cosine of `wi`.
+    At rho = 0, where f and E are 0, the density is the limit for rho -> 0, which is FON's density.
+    Accuracy: the relative error is below 1e-14. [Portsmouth2025], Eqs. (16), (19) and (28).
 
         >>> round(float(eon_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
         0.332784
@@ -222,7 +233,7 @@ def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLik
 
 
 def eon_density_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness: Array) -> Array:
-    """`eon_pdf` in terms of mu_o, mu_i and s, which `cosines` computes."""
+    """`eon_pdf` as a function of mu_o, mu_i and s, the results of `diffuse.cosines`."""
     weight, loss_o = eon_multiple_ratio(rho, roughness), fon_loss_mu(mu_o)
     parts = 1.0 + roughness * fon_quotient(mu_o, mu_i, s) + weight * loss_o * fon_loss_mu(mu_i)
     total = 1.0 + C1 * roughness + (weight * (C1 - C2) - roughness) * loss_o
@@ -240,8 +251,9 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     ends = [end / ends[-1] for end in ends]
     starts = [0.0 * ends[0], *ends[:-1]]
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
-    rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])  # 1 - v of the flat part
-    # Sample a cosine from each part and keep the chosen one; the flat part is sampled below.
+    # `rest` is 1 - v[3] for the flat part, without cancellation.
+    rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])
+    # Sample a cosine from each part but the flat part, and keep the cosine of the chosen part.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, arrays.power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(arrays.power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
@@ -269,13 +281,16 @@ def eon_cube_gap(mu: Array, S: Array) -> Array:
 
 
 def eon_segment(mu: Array, S: Array) -> Array:
-    """K(theta), the integral of sin^2 (1 - cos); clamped to 0, as its terms cancel near the normal."""
+    """K(theta), the integral of sin^2 (1 - cos) from 0 to theta.
+
+    Near the normal, the terms cancel, so a negative difference is clamped to 0.
+    """
     xp = array_namespace(mu, S)
     return xp.maximum(0.5 * (xp.atan2(S, mu) - S * mu) - S**3 / 3.0, 0.0)
 
 
 def stretched(u: Array, start: Array, end: Array) -> Array:
-    """`u` mapped from [start, end) to [0, 1); clamped first, so that no quotient overflows."""
+    """`u` clamped to [start, end], so that no quotient overflows, and then mapped to [0, 1)."""
     xp = array_namespace(u, start, end)
     length = xp.where(end > start, end - start, 1.0)
     clamped = xp.minimum(xp.maximum(u, start), end)
@@ -283,40 +298,45 @@ def stretched(u: Array, start: Array, end: Array) -> Array:
 
 
 def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
-    """Direction with cosine `mu` and sine `S` on wo's side; the sine of its azimuth is uniform."""
+    """Direction with cosine `mu` and sine `S` of the polar angle, at an azimuth in [-pi/2, pi/2].
+
+    The sine of the azimuth is uniformly distributed.
+    """
     return stack_xyz(2.0 * S * root(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu)
 
 
 def eon_lower_cosine(x: Array, S: Array) -> Array:
-    """Cosine below mu_o sampled in proportion to S mu, from a uniform x = 1 - S^3."""
+    """Cosine below mu_o, sampled in proportion to S mu because x = 1 - S^3 is uniform."""
     return root(x * (1.0 + S) / (1.0 + S + S * S))
 
 
 def eon_upper_limit(mu: Array, S: Array) -> Array:
-    """y = (K / K(pi / 2))^(2/5) for the angle with this cosine and sine."""
+    """y = (K(theta) / K(pi / 2))^(2/5) for the theta with the cosine `mu` and the sine `S`."""
     return arrays.power(eon_segment(mu, S) / (0.25 * np.pi - 1.0 / 3.0), 0.4)
 
 
 def eon_upper_quotient(y: Array) -> Array:
-    """Fitted function Q(y) of `eon_upper_cosine`; Q(1) = 1."""
+    """Polynomial Q(y) that `eon_upper_cosine` uses, with Q(1) = 1."""
     a, b, c, d, e, f = UPPER
     even, odd = a + y * y * (c + y * y * e), b + y * y * (d + y * y * f)
     return 1.0 + (1.0 - y) * (even + y * odd)
 
 
 def eon_upper_cosine(y: Array, mu_o: Array, y_o: Array) -> Array:
-    """Cosine above mu_o sampled in proportion to S (1 - mu) / mu, from a uniform K, y = v^(2/5).
+    """Cosine above mu_o, sampled in proportion to S (1 - mu) because K is uniform.
 
-        1 - mu = m(v K_o) (1 - mu_o) / m(K_o),  m(K) = y Q(y)
+        1 - mu = m(v K_o) (1 - mu_o) / m(K_o)
 
-    Dividing by m(K_o) keeps every sample above mu_o, despite the error of the fit m.
+    `y` is v^(2/5) for a uniform v, and `y_o` is (K_o / K(pi / 2))^(2/5), where K_o = K(theta_o).
+    m(K) = z Q(z), where z = (K / K(pi / 2))^(2/5), approximates 1 - mu as a function of K. Because
+    of the division by m(K_o), every sample is above mu_o despite the error of m.
     """
     m = (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y))
     return 1.0 - m
 
 
 def eon_multiple_cosine(t: Array) -> Array:
-    """Cosine sampled in proportion to H(mu) mu: a fitted function of t = v^(1/3)."""
+    """Cosine sampled in proportion to H(mu) mu, approximately, from t = v^(1/3) for a uniform v."""
     a, b, c, d, e, f = MULTIPLE
     m = 1.0 - t
     w = root(m)
@@ -325,10 +345,11 @@ def eon_multiple_cosine(t: Array) -> Array:
 
 
 def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> Array:
-    """Direction sampled in proportion to 1 + q x on the disk; `rest` is an accurate 1 - v.
+    """Direction whose projection on the unit disk has a density proportional to 1 + q x.
 
-    (x, y) is uniform on the disk; x is then mapped along its chord by the inverse distribution.
-    z = sqrt(1 - x^2 - y^2) is computed without a cancellation.
+    A uniform point (x, y) of the disk is moved along the chord at y by the inverse distribution.
+    z = sqrt(1 - x^2 - y^2) is computed without a cancellation. `rest` is 1 - v without a loss of
+    digits.
     """
     rest = 1.0 - v if rest is None else rest
     wh = around(root(rest), root(v), u2)
@@ -338,7 +359,7 @@ def eon_flat_draw(v: Array, u2: Array, q: Array, rest: Array | None = None) -> A
 def eon_flat_direction(
     v: Array, x: Array, y: Array, q: Array, rest: Array | None = None
 ) -> tuple[Array, Array, Array]:
-    """Direction x, y, z of `eon_flat_draw` from a uniform point of the disk; v = x^2 + y^2."""
+    """Direction of `eon_flat_draw` from a uniform point (x, y) of the disk, with v = x^2 + y^2."""
     rest = 1.0 - v if rest is None else rest
     linear = 1.0 + q * x
     length = root(linear * linear + q * q * rest)
@@ -350,9 +371,9 @@ def eon_flat_direction(
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled from the transformed cosine, possibly below the horizon, and its density.
 
-    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
-    A sample is wasted with probability (1 - 1/sqrt(1 + d^2))/2. This is largest, 0.0534, for
-    roughness 1 at grazing. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
+    `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
+    1/sr. The probability of a wasted sample, (1 - 1/sqrt(1 + d^2))/2, is largest for roughness 1
+    and a grazing view, 0.0534. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
 
         >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
         >>> float(wi[2]) < 0.0
@@ -364,9 +385,10 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ltc_sample` at `wi`, above the horizon.
+    """Density of `ltc_sample` at a `wi` above the horizon.
 
-    Its integral is the probability that a sample is not wasted. [Portsmouth2025], Eqs. (23), (24).
+    The integral of the density is the probability that a sample is not wasted. [Portsmouth2025],
+    Eqs. (23), (24).
 
         >>> round(float(ltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
         0.31831
@@ -375,8 +397,8 @@ def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return ltc_density(wo, wi, roughness, ltc_md(wo[..., 2], roughness))
 
 
-# Entries a, b, c, d of the matrix M, fitted in [Portsmouth2025], Listing 2, without a stated error.
-# `mu` is the cosine of wo.
+# Entries a, b, c, d of the matrix M in [Portsmouth2025], Listing 2, as functions of the roughness
+# and of wo's cosine `mu`. The paper does not state how well M approximates EON.
 def ltc_ma(mu: Array, roughness: Array) -> Array:
     a = 0.303392 + (-0.518982 + 0.111709 * mu) * mu + (-0.276266 + 0.335918 * mu) * roughness
     return 1.0 + roughness * a
@@ -397,7 +419,10 @@ def ltc_md(mu: Array, roughness: Array | float) -> Array:
 
 
 def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[Array, Array]:
-    """Direction of M wh in the surface's frame, and its density, for cosine-weighted wh."""
+    """Direction of M wh in the surface's frame, and density of this direction.
+
+    - `wh`: Cosine-weighted direction in the frame in which wo has azimuth 0.
+    """
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     x, y, z = wh[..., 0], wh[..., 1], wh[..., 2]
     wi, pdf = _normalized(wo, stack_xyz(a * x + b * z, c * y, d * x + z), z / np.pi)
@@ -405,20 +430,20 @@ def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[A
 
 
 def _normalized(wo: Array, w: Array, pdf: Array) -> tuple[Array, Array]:
-    """Direction of w, given in the frame in which wo has azimuth 0, and pdf |w|^3."""
+    """w normalized and rotated from the frame in which wo has azimuth 0, and pdf |w|^3."""
     length = root(array_namespace(w).sum(w * w, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
     return rotate_z(w / length[..., np.newaxis], cosine, sine), pdf * length**3
 
 
 def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
-    """Density at `wi` of M wh / |M wh|, for cosine-weighted wh."""
+    """Density at `wi` of the direction M wh / |M wh|, where wh is cosine-weighted."""
     a, b, c = (entry(wo[..., 2], roughness) for entry in (ltc_ma, ltc_mb, ltc_mc))
     cosine, sine, _ = azimuth_frame(wo)
     wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
     det = c * (a - b * d)
-    # The adjugate of M times wi is wh up to a factor.
+    # The adjugate of M times wi is parallel to wh.
     wh_z = c * (a * z - d * x)
     squared = (c * (x - b * z)) ** 2 + ((a - b * d) * y) ** 2 + wh_z**2
     return (det / squared) ** 2 * arrays.at_least_0(wh_z) / np.pi
@@ -428,11 +453,11 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled from the clipped transformed cosine, and its density.
 
-    As a sampler of EON it is biased: since `wh` is also clipped at its own horizon, some directions
-    into which EON reflects are never sampled. The lune d x + z < 0 lies at x > 0 for d < 0, as in
-    Listing 3, and at x < 0 for d > 0. The fitted d is positive for mu_o > 0.99991; the listing then
-    keeps the wrong side, and this function the right side. [Portsmouth2025], Eqs. (26) and (27),
-    Listing 3.
+    As a sampler of EON, CLTC is biased: `wh` is also clipped at its own horizon, so some directions
+    into which EON reflects are never sampled. The lune d x + z < 0 lies at x > 0 for d < 0, which
+    Listing 3 assumes, and at x < 0 for d > 0. The approximation of d is positive for
+    mu_o > 0.99991, where Listing 3 keeps the wrong side. This function always keeps the right side.
+    [Portsmouth2025], Eqs. (26) and (27), Listing 3.
 
         >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
@@ -447,7 +472,8 @@ def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Arra
 def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     """Density of `cltc_sample` at `wi`.
 
-    It is 0 for directions that are never sampled. [Portsmouth2025], Eqs. (23), (24), (27), Listing 3.
+    The density is 0 for directions that are never sampled. [Portsmouth2025], Eqs. (23), (24), (27),
+    Listing 3.
 
         >>> round(float(cltc_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 0.0)), 6)
         0.31831
@@ -459,12 +485,12 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled from the paper's mixture of CLTC and uniform lobe, and its density.
+    """Direction sampled from the paper's mixture of CLTC and a uniform lobe, and its density.
 
     `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Density of the mixture, in
-    1/sr. Listing 4 uses the uniform lobe for u1 <= P_u and divides u1 by P_u, which is 0/0 at
-    roughness 0 and u1 = 0. Here the condition is u1 < P_u, which is never true for P_u = 0.
-    [Portsmouth2025], Section 4, Listing 4.
+    1/sr. Listing 4 of the paper selects the uniform lobe for u1 <= P_u and divides u1 by P_u, which
+    is 0/0 at roughness 0 and u1 = 0. This function selects the uniform lobe for u1 < P_u, which is
+    never true for P_u = 0. [Portsmouth2025], Section 4, Listing 4.
 
         >>> wi, pdf = eon_cltc_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.0)
         >>> wi, round(float(pdf), 6)
@@ -497,9 +523,9 @@ def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return P_u * (0.5 / np.pi) + (1.0 - P_u) * cltc_pdf(wo, wi, roughness)
 
 
-# Fit of [Portsmouth2025], Listing 4, for mu and roughness in [0, 1]; the paper states no error.
+# The paper states no error of the approximation below, which is for mu and roughness in [0, 1].
 def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
-    """Probability P_u of the uniform lobe."""
+    """Probability P_u of the uniform lobe: [Portsmouth2025], Listing 4."""
     P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu
     return arrays.power(roughness, 0.1) * P_u
 
@@ -512,10 +538,10 @@ def cltc_kept_fraction(d: Array) -> Array:
 def _cltc_draw(
     wo: Array, u1: Array, rest: Array, u2: Array, roughness: Array
 ) -> tuple[Array, Array]:
-    """`cltc_sample` without checks; `rest` is an accurate 1 - u1."""
+    """`cltc_sample` for valid arguments; `rest` is 1 - u1 without a loss of digits."""
     d = ltc_md(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
-    # On the edge of the lune, d x + z is zero up to rounding of either sign.
+    # On the edge of the lune, d x + z is 0 up to rounding, which may make it negative.
     wi = stack_xyz(wi[..., 0], wi[..., 1], arrays.at_least_0(wi[..., 2]))
     return wi, pdf / cltc_kept_fraction(d)
 
@@ -523,18 +549,20 @@ def _cltc_draw(
 def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> Array:
     """Cosine-weighted direction with d x + z >= 0: [Portsmouth2025], Listing 3.
 
-    `rest` is an accurate 1 - u1. The chord at y has the half length c, c^2 = 1 - u1 + x^2, and x is
-    mapped to x' = c (1 - k) + k x, where k is the kept fraction. Then
+    `rest` is 1 - u1 without a loss of digits. The chord of the unit disk at y has the half length
+    c, where c^2 = 1 - u1 + x^2. x is mapped to x' = c (1 - k) + k x, where k is the kept fraction.
+    Then
 
-        z^2 = 1 - x'^2 - y^2 = k (c - x) (2 c (1 - k) + k (c + x)),
+        z^2 = 1 - x'^2 - y^2 = k (c - x) (2 c (1 - k) + k (c + x))
 
-    where the smaller of c - x and c + x is (1 - u1) / larger, so nothing cancels on the rim.
+    The smaller of c - x and c + x is computed as 1 - u1 divided by the larger, so that nothing
+    cancels near the rim of the disk.
     """
     rest = 1.0 - u1 if rest is None else rest
     wh = around(root(rest), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
     xp, kept, length = array_namespace(x, d), cltc_kept_fraction(d), root(1.0 + d * d)
-    lost = 0.5 * d * d / (length * (1.0 + length))  # 1 - kept, which is small
+    lost = 0.5 * d * d / (length * (1.0 + length))  # 1 - kept without cancellation
     half, negative = root(rest + x * x), x < 0.0
     larger = half + xp.where(negative, -x, x)
     smaller = rest / larger
@@ -548,9 +576,9 @@ def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> A
 def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction reflected by a visible GGX normal, possibly below the horizon, and its density.
 
-    `wi` (..., 3): Unit vectors; those with z < 0 are wasted, their weight is 0. `pdf` (...): 1/sr.
-    If an alpha is 0, no density exists, and 0 is returned. Value times cosine divided by density
-    is F G2 / G1(wo). [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
+    `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
+    1/sr. If an alpha is 0, no density exists, and `pdf` is 0. The weight of a sample, value times
+    cosine divided by density, is F G2 / G1(wo). [Dupuy2023], Section 3; [Heitz2014], Eq. (16).
 
         >>> wi, pdf = ggx_sample([0.6, 0.0, 0.8], [0.25, 0.5], [0.5, 0.25])
         >>> wi.round(6), round(float(pdf), 6)
@@ -566,11 +594,12 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ggx_sample` at `wi`, on the whole sphere: [Heitz2014], Eqs. (16), (43).
+    """Density of `ggx_sample` at `wi`, which may have any z: [Heitz2014], Eqs. (16), (43).
 
         pdf = G1(wo) D(wh) / (4 mu_o), and 0 where wh is below the horizon
 
-    Its integral over the upper hemisphere is the probability that a sample is not wasted.
+    The integral of the density over the upper hemisphere is the probability that a sample is not
+    wasted.
 
         >>> round(float(ggx_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.5, 0.25])), 6)
         0.455389
@@ -584,26 +613,32 @@ def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def _components(vectors: dict[str, Numbers]) -> list[Array]:
-    """Vectors, broadcast against each other, with the components first."""
+    """Vectors, broadcast against each other, with the components on the first axis."""
     lead, xp = arguments.lead_shape(vectors, {}), array_namespace(*vectors.values())
     spread = [xp.broadcast_to(v, (*lead, *v.shape[-1:])) for v in vectors.values()]
     return [xp.permute_dims(vector, (len(lead), *range(len(lead)))) for vector in spread]
 
 
 def visible_density(wo: Array, wh: Array, roughness: Array) -> Array:
-    """Density G1(wo) D(wh) / (4 mu_o), components first; G1 / mu_o is finite at grazing."""
+    """Density G1(wo) D(wh) / (4 mu_o), where G1 / mu_o is finite at grazing.
+
+    The components of the vectors are on the first axis.
+    """
     masking = 0.5 * ggx.reciprocal(wo[2] + ggx.stretched_length(wo, roughness))
     return masking * ggx.ndf(wh, roughness)
 
 
 def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
-    """Visible normal sampled from two random numbers, components first: [Dupuy2023], Listing 3."""
+    """Visible normal sampled from two random numbers: [Dupuy2023], Listing 3.
+
+    The components of the vectors are on the first axis.
+    """
     xp = array_namespace(wo, u1, roughness)
     stretched = xp.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
     length = root(xp.sum(stretched * stretched, axis=0))
-    # For a smooth surface at grazing, `length` is 0 and the normal does not depend on u1, u2.
+    # For alpha 0 and a grazing view, `length` is 0, and the normal does not depend on u1 and u2.
     stretched = stretched / xp.where(length > 0.0, length, 1.0)
-    # Uniform point on the spherical cap where z is above -z of the stretched view.
+    # Sample a uniform point on the part of the unit sphere with z > -stretched[2].
     down = (1.0 + stretched[2]) * u1
     z, phi = 1.0 - down, 2.0 * np.pi * u2
     S = root(down * (1.0 + z))
@@ -619,7 +654,8 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
 def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled in proportion to the Zeltner lobe times the cosine, and its density.
 
-    The direction is above the horizon. [MaterialX2026], Zeltner Sheen Model, LTC Inverse Matrix.
+    The direction is always above the horizon. [MaterialX2026], Zeltner Sheen Model, section LTC
+    Inverse Matrix.
 
         >>> wi, pdf = zeltner_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> wi.round(6), round(float(pdf), 6)
@@ -635,7 +671,9 @@ def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[A
 
 @any_array
 def zeltner_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `zeltner_sample` at `wi`: [MaterialX2026], Zeltner Sheen Model, Cosine-Weighted BRDF.
+    """Density of `zeltner_sample` at `wi`.
+
+    [MaterialX2026], Zeltner Sheen Model, section Cosine-Weighted BRDF.
 
     >>> round(float(zeltner_pdf([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], 1.0)), 6)
     0.24421

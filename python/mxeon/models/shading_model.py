@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model as one object: value, albedos, samples, density and inputs.
+"""Objects that hold a model's functions and inputs.
 
-A call's inputs are bound to the model's parameters, checked, and laid out in rows, one per pair.
+Each call validates the inputs and arranges them in rows, one row per pair of directions.
 """
 
 from __future__ import annotations
@@ -23,28 +23,29 @@ UP, ALONG = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)  # MaterialX's default normal and t
 class Rows:
     """Vectors and inputs of a call, one row per pair of directions.
 
-    - `inputs`: (N,), (N, 2) or (N, C) by parameter name; one row if all pairs share the value.
+    - `inputs`: Arrays (N,), (N, 2) or (N, C) by the name of the parameter. An array has one row if
+      all pairs of directions share the value.
     """
 
-    lead: tuple[int, ...]  # shape of the array of pairs
+    lead: tuple[int, ...]  # shape of the array of pairs of directions
     vectors: list[Array]  # directions or random numbers
     inputs: dict[str, Array]
-    colored: bool  # whether a color has an axis of channels
+    colored: bool  # whether at least one color was passed with an axis of channels
 
     def shaped(self, values: Array, last: tuple[int, ...] = ()) -> Array:
-        """Values by row, (N, *last) or (1, *last), reshaped to (*lead, *last)."""
+        """Values of all rows, (N, *last) or (1, *last), reshaped to (*lead, *last)."""
         xp, count = array_namespace(values), int(np.prod(self.lead))
         return xp.reshape(xp.broadcast_to(values, (count, *last)), (*self.lead, *last))[()]
 
     def colors(self, values: Array) -> Array:
-        """Values by row, (N, C), reshaped; the channel axis is dropped if no color has one."""
+        """Values of all rows, (N, C), reshaped to (*lead, C), or to lead if `colored` is False."""
         values = self.shaped(values, tuple(values.shape[-1:]))
         return values if self.colored or values.shape[-1] != 1 else values[..., 0]
 
 
 @any_array
 def rows(parameters: Sequence[Parameter], vectors: Collection[str], /, **values: ArrayLike) -> Rows:
-    """Vectors (..., K) and values of parameters, all by name, as rows."""
+    """`Rows` of the vectors and of the parameters' values, which are passed by name."""
     directions = {name: _floats(arguments.checked_real(name, values[name])) for name in vectors}
     for name, w in directions.items():
         count = 2 if name == "u" else 3
@@ -69,7 +70,7 @@ def rows(parameters: Sequence[Parameter], vectors: Collection[str], /, **values:
 
 @any_array
 def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
-    """Directions with these cosines and azimuths, shape (..., 3)."""
+    """Directions with these cosines of the polar angle and these azimuths, shape (..., 3)."""
     cosine, phi = _floats(arguments.checked("mu", mu)), _floats(arguments.checked("phi", azimuth))
     values = arrays.host_values(cosine)
     if values is not None and values.size and values.shape[-1:] == (3,):
@@ -86,16 +87,16 @@ def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
 
 
 def _floats(value: ArrayLike) -> Array:
-    """Numbers as a float64 array; an array of another library is returned unchanged."""
+    """Numbers as a float64 array; an array of a library other than NumPy is returned unchanged."""
     return cast(Array, value) if library(value) else np.asarray(value, np.float64)
 
 
 def _flattened(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:
-    """Array as N rows, (N, last) or (N,), or as one row if all pairs share its value.
+    """Array reshaped to N rows, or to one row if there is only one value.
 
-    - `lead`: Shape of the array of pairs.
-    - `last`: Whether the last axis holds components, which stay together.
-    - `whole`: Whether to repeat a value that all pairs share.
+    - `lead`: Shape of the array of pairs of directions, of which there are N.
+    - `last`: Whether the last axis holds components; rows are then arrays of components.
+    - `whole`: Whether to return N equal rows if there is only one value.
     """
     xp = array_namespace(array)
     tail = tuple(array.shape[-1:]) if last else ()
@@ -104,7 +105,7 @@ def _flattened(array: Array, lead: tuple[int, ...], last: bool, whole: bool = Fa
     return xp.reshape(xp.broadcast_to(array, (*lead, *tail)), (-1, *tail))
 
 
-# Names of the models' functions, with the reason for which a model may lack the function.
+# The functions of a model, each with the end of the message for models that lack the function.
 LACKS = {
     **dict.fromkeys(("bsdf", "albedo_dir"), ""),
     **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),
@@ -116,9 +117,9 @@ SIDES = {"front": 1.0, "back": -1.0}
 
 @dataclass(frozen=True)
 class ModelSampler:
-    """Functions that sample (wi, pdf) for a model and return the density at wi.
+    """Two functions, `sample`, which returns (wi, pdf), and `pdf`, which returns the density at wi.
 
-    `side` of the samples is 1 above the horizon, -1 below it, and None if they may have any z.
+    - `side`: 1 if all samples are above the horizon, -1 if all are below the horizon, else None.
     """
 
     sample: Callable[[Array, Array, Inputs], tuple[Array, Array]]
@@ -128,27 +129,29 @@ class ModelSampler:
 
 @dataclass(frozen=True, repr=False)
 class ShadingModel:
-    """A model as functions of MaterialX's inputs.
+    """A model whose functions take MaterialX's inputs.
 
-    Each function takes the inputs after its directions, in the order of `parameters` or by name;
-    omitted inputs have MaterialX's default. Shapes broadcast, except the last axes of directions,
-    colors and pairs. A color is a number or has its channels on the last axis; if all colors are
-    numbers, results have no channel axis. A pair, such as the `roughness` of microfacets, may be one
-    number for both directions. Three numbers for a color are red, green and blue.
+    The arguments of a function are directions, followed by the inputs in the order of `parameters`;
+    inputs may also be passed by name. Omitted inputs have MaterialX's default. Shapes broadcast,
+    except for the last axes of directions, colors and pairs. A color is a number or has its
+    channels on the last axis; three channels are red, green and blue. If all colors are numbers,
+    results have no axis of channels. A pair, such as the `roughness` of microfacets, may be one
+    number for tangent and bitangent.
 
-    wo must be on or above the horizon. wi may be anywhere; the value is 0 if the model scatters no
+    wo must be on or above the horizon. wi may have any z; the value is 0 if the model scatters no
     light from wi. `pdf` is the density of `sample` and integrates to 1 over the whole sphere. If a
-    model only reflects, samples below the horizon are wasted: their value is 0, their density is
-    not. Models without their own sampler sample the cosine; hair samples the sphere.
+    model only reflects, samples below the horizon are wasted, because their value is 0 although
+    their density is positive. Models without their own sampler sample a cosine-weighted hemisphere;
+    the hair model samples the sphere uniformly.
 
-    The functions raise ValueError if an input leaves its range, a shape is invalid or ambiguous, or
-    the model lacks the function; TypeError if an input is unknown or given twice.
+    The functions raise ValueError if an input leaves its range, if a shape is invalid or ambiguous,
+    or if the model lacks the function. They raise TypeError if an input is unknown or passed twice.
     """
 
     row: PbrNode
     parameters: tuple[Parameter, ...]  # inputs: name, default, interval, unit
     sampler: ModelSampler | None = None
-    lights: str = "front"  # origin of scattered light: "front", "back", "all sides"
+    lights: str = "front"  # side of the light that the model scatters: "front", "back", "all sides"
 
     @property
     def name(self) -> str:
@@ -184,7 +187,7 @@ class ShadingModel:
         inputs: tuple[ArrayLike, ...],
         named: dict[str, ArrayLike],
     ) -> Rows:
-        """Vectors and inputs of a call as `Rows`; omitted inputs have their defaults."""
+        """Vectors and inputs of a call as `Rows`, with default values for omitted inputs."""
         names = [each.name for each in self.parameters]
         aliases = {each.quantity: each.name for each in self.parameters}
         if len(inputs) > len(names):
@@ -208,37 +211,40 @@ class ShadingModel:
         return (*value, "albedo_dir", *average, *samples)
 
     def brdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Value of a model that reflects, in 1/sr, without the cosine.
+        """Value of a model that only reflects, in 1/sr, without the cosine.
 
         - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z,
           tangent +x. wo must have z >= 0; the value is 0 for wi with z < 0.
-        - `*inputs`, `**named`: Inputs, as listed in `parameters`.
+        - `*inputs`, `**named`: Values of the inputs in `parameters`, by position or by name.
 
-        Result (..., C) or (...).
+        The shape of the result is (..., C), or (...) if all colors are numbers.
         """
         self._need("brdf")
         return self.bsdf(wo, wi, *inputs, **named)
 
     def bsdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Value of any model, with `brdf`'s arguments; 0 if it scatters no light from wi."""
+        """Value of any model, with the arguments of `brdf`.
+
+        The value is 0 if the model scatters no light from wi.
+        """
         call = self._bound({"wo": wo, "wi": wi}, inputs, named)
         return call.colors(_on_side(SIDES.get(self.lights), self.row.value, call))
 
     def albedo_dir(
         self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
     ) -> Array:
-        """Directional albedo: the integral of value times cosine; for hair, without the cosine.
+        """Directional albedo, the integral of value times cosine, or of the value for hair.
 
         - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
-        - `azimuth` (...): The viewer's angle from the tangent, in radian; only anisotropic models
-          depend on it.
+        - `azimuth` (...): Angle between the viewer's azimuth and the tangent, in radians, which
+          matters only for anisotropic models.
         """
         call = self._bound({"view": views(mu, azimuth)}, inputs, named)
         integral = self.row.integral or self.row.albedo
         return call.colors(integral(call.vectors[0], call.inputs))
 
     def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Average albedo under uniform light, for models with a closed form."""
+        """Average albedo under uniform light, for models whose average has a closed form."""
         self._need("albedo_avg")
         assert self.row.average is not None
         call = self._bound({}, inputs, named)
@@ -249,9 +255,9 @@ class ShadingModel:
     ) -> tuple[Array, Array]:
         """Directions sampled for the model, shape (..., 3), and their density in 1/sr, shape (...).
 
-        `u`, shape (..., 2), holds uniform random numbers in [0, 1). EON is sampled exactly for the
-        mean of the channels. A mirror, roughness 0, has no density: both value and density are 0, so
-        callers use the albedo `albedo_dir(wo[2])` as the weight of a sample, instead of 0 / 0.
+        `u`, shape (..., 2), holds uniform random numbers in [0, 1). For EON, the samples are exact
+        for the mean of the color's channels. For a mirror, which has roughness 0, value and density
+        are 0. The weight of a sample is then the albedo `albedo_dir(wo[2])` instead of 0 / 0.
         """
         self._need("sample")
         assert self.sampler is not None
@@ -260,7 +266,7 @@ class ShadingModel:
         return call.shaped(wi, (3,)), call.shaped(pdf)
 
     def pdf(self, wo: ArrayLike, wi: ArrayLike, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Density of `sample` at any wi, in 1/sr, shape (...); arguments as in `brdf`."""
+        """Density of `sample` at any wi, in 1/sr, shape (...), with the arguments of `brdf`."""
         self._need("pdf")
         assert self.sampler is not None
         call = self._bound({"wo": wo, "wi": wi}, inputs, named)
@@ -270,13 +276,17 @@ class ShadingModel:
 def _on_side(
     side: float | None, function: Callable[[Array, Array, Inputs], Array], call: Rows
 ) -> Array:
-    """Values of a function; 0 for wi below the horizon if `side` is 1, above the horizon if -1."""
+    """Values of a function, but 0 on one side of the horizon.
+
+    - `side`: 1 for the value 0 below the horizon, -1 for the value 0 above it, None for neither.
+    """
     wo, wi = call.vectors
     if side is None:
         return function(wo, wi, call.inputs)
     xp, z = array_namespace(wi), side * wi[:, 2]
     outside = z < -arguments.ROUNDING
-    if xp is arrays.NUMPY and not outside.any():  # a shortcut: a third of the time for cheap values
+    # This shortcut takes a third of the time if `function` is fast.
+    if xp is arrays.NUMPY and not outside.any():
         return function(wo, wi, call.inputs)
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(outside, -z, z)], axis=-1)
     values = function(wo, mirrored, call.inputs)

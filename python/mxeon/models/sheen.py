@@ -9,8 +9,8 @@ BRDF. Albedos are for color 1.
 - `color` (..., C): Tint per channel, in [0, 1]; a number is one channel.
 - `roughness` (...): In [0, 1]. Zeltner's sheen raises a smaller roughness to 0.01.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 
 The directional albedo of the Conty-Kulla sheen is an integral over the half vector, where l is the
 latitude above the surface and phi is the azimuth relative to wo. The integral over phi has a closed

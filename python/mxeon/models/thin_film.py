@@ -1,31 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
 """Thin films on the microfacet nodes of pbrlib: reflectances, lobes and albedos.
 
-Section names refer to [MaterialX2026], appendix Thin-Film Iridescence Model, after [Belcour2017]. With thickness 0,
-the node's own Fresnel curve is used.
+Section names refer to [MaterialX2026], appendix Thin-Film Iridescence Model, which is based on
+[Belcour2017]. With thickness 0, the reflectance is the node's own Fresnel curve.
 
-- `mu` (...): Cosine between direction and microfacet normal, in [0, 1].
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
-- `category`, `inputs`: Category of the node, and its inputs by port name. Colors have one or three channels;
-  `thinfilm_thickness` (...) is in nm, in [0, 1e9], and `thinfilm_ior` (...) in [1, 1e50].
-- `form`: Choices that the specification leaves open: the matrix to RGB, the number of orders, how an index per channel
-  enters a sum over CIE XYZ, and whether values are clamped to [0, 1], which the specification does at the very end.
+- `mu` (...): Cosine of the angle between a direction and a microfacet normal, in [0, 1].
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
+  +x, z >= 0.
+- `category`, `inputs`: Category of the node, and a mapping from the names of the node's inputs to
+  values. Colors have one or three channels. `thinfilm_thickness` (...) is in nm, in [0, 1e9], and
+  `thinfilm_ior` (...) is in [1, 1e50].
+- `form`: A `Form`, the choices that the specification leaves to implementations.
 
 Result (..., 3): linear RGB, in [0, 1].
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 
-The film is at least as dense as the vacuum above it, so the amplitude r12 of its upper interface is real; the
-amplitude of the lower interface is r23 = sqrt(R23) e^(i phi_23). The printed form has reflectances R12, R23 and
-phases, phi = phi_21 + phi_23, and sums
+The film is at least as dense as the vacuum above the film, so the amplitude r12 of the upper
+interface is real. The amplitude of the lower interface is r23 = sqrt(R23) e^(i phi_23). In the
+specification, the reflectances are R12 and R23, the phase is phi = phi_21 + phi_23, and the sum is
 
     I = C_0 + 2 sum of C_m S(m D, m phi),  C_0 = R12 + R_s,  R_s = T121^2 R23 / (1 - R12 R23),
     C_m = (R_s - T121) sqrt(R12 R23)^m,  T121 = 1 - R12
 
-Here the m-th term is the real part of z^m, z = r21 r23 = -r12 r23, which has length sqrt(R12 R23) and angle phi. z^m
-has derivatives everywhere; roots and phases have none where a reflectance is 0: for a film of index 1, at Brewster's
-angle, and over a substrate of the film's own index.
+In this file, the term of order m is computed from the complex power z^m of z = r21 r23 = -r12 r23,
+whose length is sqrt(R12 R23) and whose angle is phi. z^m has derivatives everywhere. Roots and
+phases have no derivatives where a reflectance is 0. A reflectance is 0 for a film with index of
+refraction 1, at Brewster's angle, and if film and substrate have the same index of refraction.
 """
 
 from __future__ import annotations
@@ -47,8 +49,10 @@ from mxeon.models.microfacet import CATEGORIES, Curve, Lobe, evaluate_lobe, fres
 
 Complex: TypeAlias = tuple[Array, Array]  # real and imaginary part
 
-# Gaussians of the sensitivities in the specification: tristimulus, v in m, mu in 1/m, sigma^2 in 1/m^2. For films up
-# to 2000 nm with index up to 2.3, XYZ is within 0.012 (dielectrics) or 0.017 (metals) of sums over wavelengths.
+# In the specification, each spectral sensitivity is a sum of Gaussians. A row holds the tristimulus
+# value (0 for X, 1 for Y, 2 for Z), v in m, mu in 1/m and sigma^2 in 1/m^2. For films up to 2000 nm
+# with indices of refraction up to 2.3, XYZ differs from a sum over wavelengths by at most 0.012 for
+# dielectrics and 0.017 for metals.
 GAUSSIANS = (
     (0, 5.4856e-13, 1.6810e6, 4.3278e9),
     (0, 9.7470e-14, 2.2399e6, 4.5282e9),
@@ -57,26 +61,28 @@ GAUSSIANS = (
 )
 NORMAL = 1.0685e-7
 METERS = 1e-9  # converts nm to m
-# Centers and standard deviations of the Gaussians, and their weights in XYZ, (3, 4).
+# Centers, standard deviations and areas of the Gaussians, and their weights in X, Y and Z, (3, 4).
 CENTERS = np.array([mu for _, _, mu, _ in GAUSSIANS])
 SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
 AREAS = [v * np.sqrt(2.0 * np.pi * variance) / NORMAL for _, v, _, variance in GAUSSIANS]
 WEIGHTS = np.eye(3)[:, [row for row, *_ in GAUSSIANS]] * AREAS
 
-# If 2 pi OPD sigma is at least THIN_SPREAD, orders are summed one by one: terms after DAMPED_ORDERS
-# are below exp(-(30 * 0.2)^2) = 3e-16. Thinner films are integrated over wavenumbers by the trapezoidal rule, in
-# steps of a fifth of a standard deviation, up to 6.5 standard deviations, where a Gaussian falls to 2^-48.
+# A film is thick if 2 pi sigma times the optical path difference is at least THIN_SPREAD. For thick
+# films, DAMPED_ORDERS orders are summed, because later terms are below exp(-(30 * 0.2)^2) = 3e-16.
+# For thin films, an integral over wavenumbers is computed by the trapezoidal rule. The step of this
+# rule is 0.2 standard deviations of a Gaussian. The rule ends after 32 steps, at 6.4 standard
+# deviations, where the Gaussian is exp(-6.4^2 / 2) = 1.3e-9 times its maximum.
 THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
-SAME = 2.0**-20  # indices with a smaller relative difference count as equal
-# Weights of the trapezoidal rule's nodes from the center outward; sum of the weights of all nodes.
+SAME = 2.0**-20  # indices of refraction with a smaller relative difference count as equal
+# Weights of the nodes of the trapezoidal rule, from the center to one end, and sum of all weights.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
 FILM_BLOCK = 2**13  # elements per block
 
 
 class Interface(NamedTuple):
-    """Amplitudes r12 (`first`) and -r23 (`second`) for one polarization, and R23."""
+    """Amplitudes r12 (`first`) and -r23 (`second`), and reflectance R23, for one polarization."""
 
     first: Array
     second: Complex
@@ -84,34 +90,36 @@ class Interface(NamedTuple):
 
 
 def refracted(mu: Array, film_ior: Array) -> Array:
-    """cos theta_t in the film: section Three-Layer Geometry."""
+    """Cosine of the refracted angle theta_t in the film, by section Three-Layer Geometry."""
     xp = array_namespace(mu, film_ior)
     squared = xp.maximum(1.0 - (1.0 - mu) * (1.0 + mu) / film_ior**2, 0.0)
-    # For a film of index 1 this is mu, with a derivative at grazing.
+    # If `squared` is 0, the result is `mu`, whose derivative is finite.
     return xp.sqrt(squared) if xp is NUMPY else xp.where(squared > 0.0, root(squared), mu)
 
 
 def path_difference(mu: Array, thickness: Array, film_ior: Array) -> Array:
-    """Optical path difference in m: section Optical Path Difference."""
+    """Optical path difference in meters, by section Optical Path Difference."""
     return 2.0 * film_ior * refracted(mu, film_ior) * thickness * METERS
 
 
 def over_index(
     mu: Array, film_ior: Array, ior: Array, extinction: Array
 ) -> tuple[Interface, Interface]:
-    """Film over a dielectric or a conductor: interfaces for the polarizations p and s.
+    """Interfaces of a film over a dielectric or a conductor, for the polarizations p and s.
 
-    Printed form, with c = film_ior cos theta_t, n = ior + i extinction, W = n cos theta_3 = sqrt(n^2 - sin^2 theta):
+    The published form, where c = film_ior cos theta_t, n = ior + i extinction and
+    W = n cos theta_3 = sqrt(n^2 - sin^2 theta), is
 
         r_s = (c - W) / (c + W),  r_p = (n^2 c - film_ior^2 W) / (n^2 c + film_ior^2 W)
 
-    As W^2 - c^2 = n^2 - film_ior^2, -r_s = (n^2 - film_ior^2) / (W + c)^2 has no difference of roots. As
-    n^2 = W^2 + sin^2 and film_ior^2 = c^2 + sin^2, n^2 c -+ film_ior^2 W is (W -+ c) (c W -+ sin^2), so
-    r_p = -r_s (c W - sin^2) / (c W + sin^2).
+    Because W^2 - c^2 = n^2 - film_ior^2, -r_s is computed as (n^2 - film_ior^2) / (W + c)^2,
+    without a difference of roots. n^2 = W^2 + sin^2 and film_ior^2 = c^2 + sin^2. Hence
+    n^2 c - film_ior^2 W = (W - c) (c W - sin^2) and n^2 c + film_ior^2 W = (W + c) (c W + sin^2),
+    so r_p = -r_s (c W - sin^2) / (c W + sin^2).
     """
     xp = array_namespace(mu, film_ior, ior, extinction)
     c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
-    # W = U + iV. The smaller part follows from U V = ior extinction without a cancellation.
+    # W is U + iV. The smaller of U and V is computed from U V = ior extinction.
     Q, A = ior * extinction, (ior - extinction) * (ior + extinction) - S2
     larger = root(0.5 * (fresnel.modulus(A, 2.0 * Q) + arrays.magnitude(A)))
     smaller = Q / xp.where(larger > 0.0, larger, 1.0)
@@ -126,11 +134,14 @@ def over_index(
 def over_schlick(
     mu: Array, film_ior: Array, F: Array, color0: Array
 ) -> tuple[Interface, Interface]:
-    """Film over a Schlick substrate with curve F at cos theta_t: interfaces for p and s.
+    """Interfaces of a film over a Schlick substrate, for the polarizations p and s.
 
-    A negative F, caused by the dip, has no amplitude and counts as 0. The phase jumps where both
-    indices are equal. Indices within SAME count as equal: in float32, color0 = 0.04 differs by 2e-8
-    from the color of a film with index 1.5.
+    - `F`: Schlick curve of the substrate at cos theta_t.
+
+    The dip of the Schlick curve can make F negative. A negative F has no amplitude and counts as 0.
+    The phase jumps by pi where film and substrate have the same index of refraction. Indices with a
+    relative difference below SAME count as equal. For example, a film with index 1.5 would have
+    color0 0.04, which differs in float32 by 2e-8.
     """
     xp = array_namespace(mu, film_ior, F)
     F = arrays.at_least_0(F)
@@ -140,14 +151,17 @@ def over_schlick(
 
 
 def index_of(color0: Array) -> Array:
-    """Index of refraction with reflectance color0 along the normal; unbounded at 1."""
+    """Index of refraction for the reflectance color0 along the normal; 2e50 for reflectance 1."""
     amplitude = root(color0)
     least = array_namespace(color0).maximum(1.0 - amplitude, fresnel.LEAST_IOR)
     return (1.0 + amplitude) / least
 
 
 def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
-    """r12 for p and s, rearranged as in `over_index`; its sign gives the phase phi_12, 0 or pi."""
+    """The amplitudes r12 for p and s, computed like the amplitudes in `over_index`.
+
+    The sign of r12 determines the phase phi_12, which is 0 or pi.
+    """
     xp = array_namespace(mu, film_ior)
     c, S2 = film_ior * refracted(mu, film_ior), (1.0 - mu) * (1.0 + mu)
     total = xp.where(c + mu > 0.0, c + mu, 1.0)
@@ -156,10 +170,13 @@ def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
 
 
 def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> Array:
-    """CIE XYZ of one polarization, (3, ...), from M `orders` or all: section Airy Summation."""
+    """CIE XYZ of one polarization, (3, ...), by section Airy Summation.
+
+    - `orders`: Number M of orders; None sums all orders.
+    """
     (first, (real, imaginary), R23), xp = interface, array_namespace(*interface[::2], opd)
     R12 = first * first
-    passed, lost = 1.0 - R12, 1.0 - R12 * R23  # if `lost` is 0, `passed` is 0 too
+    passed, lost = 1.0 - R12, 1.0 - R12 * R23  # `lost` is 0 only if `passed` is 0
     dc = R12 + passed**2 * R23 / xp.where(lost > 0.0, lost, 1.0)
     values = first * real, first * imaginary, 2.0 * np.pi * opd
     shape = np.broadcast_shapes(*(tuple(each.shape) for each in values))
@@ -179,7 +196,7 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
 
 
 def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> None:
-    """Fill the sums of a block: thick films by orders, thin films by integrals."""
+    """Compute `sums` of a block, by sums of orders for thick films and integrals for thin films."""
     thick = phi * SPREADS.min() >= THIN_SPREAD if orders is None else np.full(len(phi), True)
     if thick.all():
         sums[:] = _orders(x, y, phi, orders or DAMPED_ORDERS)
@@ -189,16 +206,18 @@ def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> No
 
 
 def _column(values: Array, array: Array) -> Array:
-    """One number per Gaussian, on a new first axis before the array's axes, in its library."""
+    """One number per Gaussian, shape (4, 1, ...), which broadcasts with `array`."""
     return like(values.reshape(-1, *(1,) * array.ndim), array)
 
 
 def _orders(x: Array, y: Array, phi: Array, orders: int) -> Array:
-    """Re of the sum of z^m S(m phi), m from 1 to `orders`, z = x + i y, for each Gaussian, (4, ...).
+    """Real part of a sum over the orders of a film, for each Gaussian, (4, ...).
 
-        S(phi) = exp(i mu phi - sigma^2 phi^2)
+        sum over m from 1 to `orders` of z^m S(m phi),  S(phi) = exp(i mu phi - sigma^2 phi^2),
+        z = x + i y
 
-    With w = z exp(i mu phi), Re(w^m) = 2 Re(w) Re(w^(m-1)) - |w|^2 Re(w^(m-2)).
+    With w = z exp(i mu phi), the recurrence Re(w^m) = 2 Re(w) Re(w^(m-1)) - |w|^2 Re(w^(m-2))
+    computes the terms.
     """
     xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
     damping = xp.exp(-((_column(SPREADS, phi) * phi) ** 2))
@@ -215,15 +234,19 @@ def _orders(x: Array, y: Array, phi: Array, orders: int) -> Array:
 
 
 def _integrated(x: Array, y: Array, phi: Array) -> Array:
-    """`_orders` for infinitely many orders, by an integral over wavenumbers.
+    """The sum of `_orders` for infinitely many orders, by an integral over wavenumbers.
 
-    The damping exp(-sigma^2 m^2 phi^2) is the mean of exp(i m sqrt(2) sigma u phi) over a standard normal u. Thus
+    The damping exp(-sigma^2 m^2 phi^2) is the mean of exp(i m sqrt(2) sigma u phi) over a standard
+    normal variable u. Hence
 
-        sum of z^m S(m phi) = mean over u of the sum of w^m,  w = z exp(i (mu + sqrt(2) sigma u) phi),  |w| = |z|
+        sum of z^m S(m phi) = mean over u of the sum of w^m,
+        w = z exp(i (mu + sqrt(2) sigma u) phi),  |w| = |z|
 
-    The sum over m >= 1 is w / (1 - w). Its real part is (Re(w) - |w|^2) / |1 - w|^2, which is
-    ((1 - |w|^2) / |1 - w|^2 - 1) / 2, since |1 - w|^2 = 1 - 2 Re(w) + |w|^2. The mean is computed by the trapezoidal
-    rule with weights HEIGHTS. Each node rotates w by a multiple of one step, so nodes need no sines of their own.
+    The sum of w^m over m >= 1 is w / (1 - w), and the real part of w / (1 - w) is
+    (Re(w) - |w|^2) / |1 - w|^2 = ((1 - |w|^2) / |1 - w|^2 - 1) / 2, since
+    |1 - w|^2 = 1 - 2 Re(w) + |w|^2. The mean is computed by the trapezoidal rule with the weights
+    HEIGHTS. From node to node, w rotates by the same angle, so the sine and cosine of this angle
+    are computed only once.
     """
     xp, angle = array_namespace(phi), _column(CENTERS, phi) * phi
     step = _column(np.sqrt(2.0) * STEP * SPREADS, phi) * phi
@@ -233,7 +256,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
     kernel = float(HEIGHTS[0]) / _distance(real, imaginary)
     c, s = turn_c, turn_s
     for height in HEIGHTS[1:].tolist():
-        # Sum the nodes on both sides of the center, then rotate to the next ones.
+        # Add the two nodes at the same distance on both sides of the center, then move outward.
         a, b, d, e = real * c, imaginary * s, imaginary * c, real * s
         kernel += height / _distance(a - b, d + e)
         kernel += height / _distance(a + b, d - e)
@@ -242,7 +265,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
 
 
 def _distance(real: Array, imaginary: Array) -> Array:
-    """|1 - w|^2 as a divisor; 0 is replaced by 1, because no light passes there."""
+    """|1 - w|^2 as a divisor. Where |1 - w|^2 is 0, the result is 1, because no light passes."""
     size = (1.0 - real) ** 2 + imaginary * imaginary
     return array_namespace(size).where(size > 0.0, size, 1.0)
 
@@ -256,7 +279,7 @@ def _squared(a: Complex) -> Array:
 
 
 def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
-    """Complex quotient a / b; the real number `otherwise` where b is 0."""
+    """Complex quotient a / b, or the real number `otherwise` where b is 0."""
     squared = _squared(b)
     xp, valid = array_namespace(squared), squared > 0.0
     size = xp.where(valid, squared, 1.0)
@@ -264,7 +287,8 @@ def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
     return xp.where(valid, real, otherwise), imaginary
 
 
-# Gauss-Legendre nodes in the cosine: for the curve, and for the clamped polynomial through it.
+# Numbers of Gauss-Legendre nodes in the cosine. F is evaluated at POINTS nodes. The polynomial
+# through these values is clamped and integrated at FINE nodes.
 POINTS, FINE = 14, 200
 
 Polarizations: TypeAlias = tuple[Interface, Interface]
@@ -272,14 +296,15 @@ Polarizations: TypeAlias = tuple[Interface, Interface]
 
 @dataclass(frozen=True)
 class Form:
-    """Choices that the specification leaves to implementations, and one defect.
+    """Choices that the specification leaves to implementations, and one known error, `share`.
 
     - `matrix`: Rows of the matrix from CIE XYZ to linear RGB.
     - `orders`: Number M of orders; None sums all orders.
-    - `mixed`: If true, the index of RGB channel k is used for XYZ value k. Otherwise XYZ is computed
-      for each channel's index, so a vanishing film does not change the channels.
-    - `share`: Factor on the Schlick substrate's reflectance; 1 in the specification.
-    - `least`: Smallest color0 that is converted to the index of a Schlick substrate.
+    - `mixed`: If True, X, Y and Z are computed with the substrate's values for red, green and blue,
+      respectively. If False, X, Y and Z are computed for each channel of the substrate, so that a
+      vanishing film does not mix the channels.
+    - `share`: Factor of the reflectance of a Schlick substrate; 1 in the specification.
+    - `least`: Smallest color0 that is converted to the index of refraction of a Schlick substrate.
     - `clamped`: Whether values are clamped to [0, 1], as in the specification.
     """
 
@@ -291,7 +316,7 @@ class Form:
     clamped: bool = True
 
 
-# Matrix of MaterialX 1.39.5 from XYZ to CIE RGB with white E.
+# Matrix from CIE XYZ to CIE RGB with equal-energy white, as in MaterialX 1.39.5.
 CIE_RGB = (
     (2.3706743, -0.9000405, -0.4706338),
     (-0.5138850, 1.4253036, 0.0885814),
@@ -303,7 +328,7 @@ MATERIALX = Form(CIE_RGB, 2, True, 0.5, 0.01)
 
 
 def film_curve(category: str, form: Form = TEXT) -> Curve:
-    """Fresnel curve of a node with the inputs of a film; with thickness 0, the node's own curve."""
+    """Fresnel curve of a node with a thin film; for thickness 0, the node's own Fresnel curve."""
     bare = CATEGORIES[category][0]
 
     def at(
@@ -321,7 +346,10 @@ def film_curve(category: str, form: Form = TEXT) -> Curve:
 
 
 def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -> Array:
-    """Coated values where the thickness is not 0, else plain values; skips `coated` without films."""
+    """`coated()` where the thickness is not 0, else `plain`.
+
+    If no thickness is positive, `coated` is not called.
+    """
     xp = array_namespace(thickness, plain)
     if xp is not NUMPY or (thickness > 0.0).any():
         return xp.where(thickness > 0.0, coated(), plain)
@@ -331,9 +359,9 @@ def _where_coated(thickness: Array, coated: Callable[[], Array], plain: Array) -
 def _film_average(
     category: str, form: Form, film: tuple[Array, Array], material: dict[str, Array]
 ) -> Array:
-    """F_ss, (3, ...): the integral of a polynomial through the film's curve, which is then clamped.
+    """F_ss, (3, ...), from a polynomial in the cosine that is clamped and then integrated.
 
-    The curve itself is not clamped, since the clamp has kinks.
+    The polynomial interpolates unclamped values of F, because clamped values would have kinks.
     """
     mu, between, weights = (like(each, film[1]) for each in _rule())
     channels = {k for k, v in material.items() if k in CATEGORIES[category][1]}
@@ -348,7 +376,10 @@ def _film_average(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of POINTS nodes, the matrix that interpolates to a fine rule, and that rule's weights."""
+    """Cosines of POINTS nodes, matrix that interpolates from these to FINE nodes, and weights.
+
+    The weights are for the FINE nodes.
+    """
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)
@@ -374,7 +405,7 @@ def _airy(
 
 
 def to_rgb(xyz: Array, form: Form) -> Array:
-    """RGB, shape (3, ...), from the XYZ of each channel's substrate, shape (3, channels, ...)."""
+    """RGB, shape (3, ...), from XYZ for each channel of the substrate, (3, channels, ...)."""
     xp, matrix = array_namespace(xyz), np.array(form.matrix)
     xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
     if form.mixed:
@@ -410,20 +441,22 @@ SUBSTRATES: dict[str, Callable[..., Polarizations]] = {
 
 
 FILM = ("thinfilm_thickness", "thinfilm_ior")
-DEGREE = 48  # degree of the polynomial in the cosine that replaces a film's curve in albedos
+DEGREE = 48  # degree of the polynomial in the cosine that replaces F of a film in albedos
 
 
 @any_array
 def film_reflectance(
     category: str, mu: ArrayLike, inputs: Mapping[str, ArrayLike], form: Form = TEXT
 ) -> Array:
-    """Reflectance of a node under a thin film for unpolarized light; `tint` and `roughness` have no effect.
+    """Reflectance of a smooth node under a thin film, without the tint, for unpolarized light.
 
-    Accuracy of the infinite sum: 1e-6 over a dielectric for cosines above 0.01; 1e-4 over a conductor at grazing
-    angles, where all orders count. A film index below 1 is rejected: the specification's phases of the first interface,
-    pi for the s polarization, require a film denser than the vacuum. The Schlick curve describes the film's lower
-    interface at the refracted angle, so the value jumps as soon as the thickness is not 0. A negative curve counts as
-    0, because it has no amplitude.
+    Accuracy: the error of the infinite sum is below 1e-6 over a dielectric for cosines above 0.01,
+    and below 1e-4 over a conductor at grazing angles, where many orders contribute. A film with an
+    index of refraction below 1 is rejected. For the s polarization, the specification sets the
+    phase of the upper interface to pi, which requires a film that is denser than the vacuum. The
+    Schlick curve describes the lower interface of the film at the refracted angle, so the result
+    jumps between thickness 0 and any positive thickness. A negative value of the Schlick curve has
+    no amplitude and counts as 0.
 
         >>> glass = {"ior": 1.5, "thinfilm_thickness": [0.0, 100.0, 300.0], "thinfilm_ior": 1.38}
         >>> film_reflectance("dielectric_bsdf", 1.0, glass).round(4)
@@ -449,9 +482,11 @@ def film_brdf(
     form: Form = TEXT,
     lobe: Lobe | None = None,
 ) -> Array:
-    """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr; `lobe` may replace its terms.
+    """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr.
 
-    [MaterialX2026], Thin-Film Iridescence; Energy Compensation.
+    - `lobe`: Terms of the microfacet BRDF, if they are not those of the specification.
+
+    [MaterialX2026], sections Thin-Film Iridescence and Energy Compensation.
 
         >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
         >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
@@ -474,8 +509,9 @@ def film_albedo_dir(
 ) -> Array:
     """Directional albedo of `film_brdf`, by quadrature, with or without the energy compensation.
 
-    The film's curve is approximated by a polynomial of degree 48 in the cosine; the error is below 1e-4 for films up
-    to 2000 nm with index up to 2. [MaterialX2026], Directional Albedo and Energy Conservation.
+    F of the film is approximated by a polynomial of degree 48 in the cosine. The error is below
+    1e-4 for films up to 2000 nm with an index of refraction up to 2. [MaterialX2026], section
+    Directional Albedo and Energy Conservation.
 
         >>> inputs = {"tint": np.ones(3), "ior": 1.5, "roughness": [0.3, 0.3]}
         >>> soap = {"thinfilm_thickness": 400.0, "thinfilm_ior": 1.33}
@@ -490,7 +526,7 @@ def film_albedo_dir(
 def _material(
     category: str, inputs: Mapping[str, ArrayLike], wo: ArrayLike = (0.0, 0.0, 1.0)
 ) -> tuple[dict[str, arrays.Numbers], dict[str, arrays.Numbers]]:
-    """Checked inputs: those with channels, and those without."""
+    """Validated inputs with channels, and validated inputs without channels."""
     _, colors, numbers = CATEGORIES[arguments.checked_choice("category", category, CATEGORIES)]
     if not isinstance(inputs, Mapping):
         raise ValueError(f"inputs must be a mapping of names to values; got {inputs!r}")
@@ -504,7 +540,7 @@ def _material(
 
 
 def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbers:
-    """Values reduced to one row if all rows are equal: a film's F_ss is then computed once."""
+    """Values reduced to one row if all rows are equal, so that F_ss is computed only once."""
     if array_namespace(values) is not NUMPY:
         return values
     many = np.ndim(wo) == 2 and values.ndim == channels + 1 and len(values) == len(np.asarray(wo))
@@ -512,7 +548,7 @@ def _short(values: arrays.Numbers, channels: int, wo: ArrayLike) -> arrays.Numbe
 
 
 def polynomial_curve(category: str, form: Form) -> Callable[..., Array]:
-    """F of a film as a polynomial in the cosine: (3, n, n, ...) for cosines (n, n, ...)."""
+    """F of a film as a polynomial in the cosine; F is (3, n, n, ...) for cosines (n, n, ...)."""
     bare_at = CATEGORIES[category][0].at
     curve = film_curve(category, replace(form, clamped=False))
 

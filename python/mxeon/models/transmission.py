@@ -1,29 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Transmission through microfacets: refraction, BTDFs, transmitted shares, and readings of the Schlick node.
+"""Transmission through microfacets of dielectrics and of the generalized Schlick node.
 
-BTDFs are in 1/sr and without the cosine. Indices of refraction are of wi's side relative to wo's: a view from inside
-a solid has the inverse of the node's index. With alpha 0, or index 1, which bends no light, the BTDF is a delta
-function and counts as 0. Radiance is scaled by the squared index as light enters another medium, so values are divided
-by it; multiplied by ior^2, they integrate over wi to the transmitted share. Transmitted shares are the mean of
-(1 - F) G2 / G1(wo) over the visible normals. The specification does not compensate for light that transmission loses
-between facets.
+BTDFs are in 1/sr and without the cosine. An index of refraction is that of the medium of wi divided
+by that of the medium of wo, so a view from inside a solid has the inverse of the node's index. If
+alpha is 0, or if the index of refraction is 1, so that light is not bent, the BTDF is a delta
+function and counts as 0. BTDFs are for radiance, which is divided by ior^2 when light passes from
+the medium of wi to the medium of wo. Hence the integral of BTDF times cosine over wi, multiplied by
+ior^2, is the transmitted fraction of the energy. This fraction is the mean of (1 - F) G2 / G1(wo)
+over the visible normals. The specification does not compensate for light that is lost between
+facets.
 
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x; wo has
-  z >= 0, wi has z <= 0.
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
+  +x; wo has z >= 0, wi has z <= 0.
 - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
 - `ior` (...): Index of refraction of the far side relative to wo's side, in [0, 1e50].
-- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at acos(1/7), and reflectance at
-  grazing, per channel, in [0, 1]; a number is one channel.
+- `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at the angle
+  acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
-- `reading`: A key of READINGS, which defines the index that `generalized_schlick_bsdf` lacks, and 1 - F for a curve
-  that may leave [0, 1].
-- `shadow`: Whether facets on the far side shadow transmitted light, as in the BTDF. If not, the share is the mean of
-  1 - F over the visible normals.
-- `inside`: Whether wo is inside the solid, where total reflection occurs beyond the critical angle.
+- `reading`: A key of READINGS, a way to understand the specification of `generalized_schlick_bsdf`.
+  The reading determines the index of refraction, which the node lacks, and 1 - F.
+- `shadow`: Whether facets on the far side shadow transmitted light, as in the BTDF. Without this
+  shadowing, the transmitted fraction is the mean of 1 - F over the visible normals.
+- `inside`: Whether wo is inside the solid, where light is totally reflected beyond the critical
+  angle.
 
-Raises `ValueError`, which names the first bad element or lists the readings, if an argument leaves its range, the
-shapes do not broadcast or the reading is unknown.
+Raises `ValueError`, which names the first bad element or lists the readings, if an argument leaves
+its range, the shapes do not broadcast or the reading is unknown.
 """
 
 from __future__ import annotations
@@ -49,19 +52,21 @@ from mxeon.models.microfacet import DIELECTRIC_CURVE, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
-LEAST_IOR = 1e-50  # smallest index used as a divisor; smaller ones reflect all light
+# Smallest index of refraction that is used as a divisor. An interface with a smaller index reflects
+# all light.
+LEAST_IOR = 1e-50
 
 
 @any_array
 def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Array:
-    """Refracted direction `wi` on the far side for light along `wo`, and vice versa.
+    """Direction `wi` on the far side from which refracted light leaves along `wo`.
 
         cos_t = sqrt(1 - (1 - cos_o^2) / ior^2),  wi = -wo / ior + (cos_o / ior - cos_t) normal
 
     - `normal` (..., 3): Normal of the surface or microfacet, unit vector to 1e-6, z >= 0.
 
-    Result (..., 3): (0, 0, 0) for total internal reflection, and if wo is behind the normal. [MaterialX2026],
-    Reflection and Transmission; [Walter2007], Eq. (40).
+    Result (..., 3): unit vectors, or (0, 0, 0) if light is totally reflected or if wo is behind the
+    normal. [MaterialX2026], section Reflection and Transmission; [Walter2007], Eq. (40).
 
         >>> refraction_direction([0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [1.5, 0.5]).round(6)
         array([[-0.4     , -0.      , -0.916515],
@@ -72,7 +77,7 @@ def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Ar
 
 
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
-    """`refraction_direction` for valid float64 arrays, components first."""
+    """`refraction_direction` for valid float64 arrays, with components on the first axis."""
     xp = array_namespace(wo, normal, ior)
     bends = ior > max(LEAST_IOR, arrays.least_normal(wo))
     inverse = 1.0 / arrays.guarded(xp.maximum(ior, LEAST_IOR), bends, 1.0)
@@ -85,10 +90,10 @@ def refracted(wo: Array, normal: Array, ior: Array) -> Array:
 
 
 def transmitting_facet(wo: Array, wi: Array, ior: Array) -> tuple[Array, Array, Array]:
-    """The microfacet that refracts wo to wi: normal wh, |wo . wh| and the Jacobian |d wh / d wi|.
+    """Normal wh of the microfacet that refracts wo to wi, |wo . wh| and Jacobian |d wh / d wi|.
 
-    All three are 0 if there is no such facet. With n = ior, |wo + n wi|^2 (d wh / d wi) is
-    n^2 |wi . wh|: [Walter2007], Eq. (17).
+    All three results are 0 if no microfacet refracts wo to wi. The Jacobian is
+    n^2 |wi . wh| / |wo + n wi|^2 with n = ior: [Walter2007], Eq. (17).
     """
     xp = array_namespace(wo, wi, ior)
     total = wo + ior * wi
@@ -113,9 +118,11 @@ def dielectric_btdf(
 
         f = tint |wo . wh| |wi . wh| (1 - F) D G2 / (mu_o |mu_i| (wo . wh + ior wi . wh)^2)
 
-    `ior` 0 disables the Fresnel curve: F is 1, and nothing is transmitted. As in [Walter2007], wo and wi must lie on
-    different sides of the microfacet. The specification omits this condition; without it, f would be positive for
-    directions that no facet connects. [MaterialX2026], Microfacet BTDF; dielectric_bsdf; [Walter2007], Eq. (21).
+    With `ior` 0, which disables the Fresnel curve of the node, F is 1, and nothing is transmitted.
+    As in [Walter2007], f is 0 unless wo and wi lie on different sides of the microfacet. The
+    specification omits this condition, without which f would be positive for pairs of directions
+    that no facet connects. [MaterialX2026], sections Microfacet BTDF and dielectric_bsdf;
+    [Walter2007], Eq. (21).
 
         >>> wo = [0.6, 0.0, 0.8]
         >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
@@ -135,7 +142,10 @@ def evaluate_btdf(
     vectors: dict[str, Numbers],
     numbers: dict[str, Numbers],
 ) -> Array:
-    """Values of a BTDF, (..., C); `at(cosine, ior=ior, **material)`, (C, ...), is F at wo . wh."""
+    """BTDF, shape (..., C), for the Fresnel reflectance F that `at` computes.
+
+    - `at`: `at(cosine, ior=ior, **material)`, shape (C, ...), is F for the cosine wo . wh.
+    """
     directions = {"wo": checked_directions("wo", wo), "wi": arguments.checked_transmitted("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
 
@@ -144,7 +154,7 @@ def evaluate_btdf(
         F = at(cosine, ior=ior, **material)
         above = array_namespace(wi).stack([wi[0], wi[1], -wi[2]])
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
-        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # index 0 transmits nothing
+        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # `ior` 0 transmits no light
         index = arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0)
         lobe = ggx.ndf(wh, roughness) * G2 / index**2
         f = (1.0 - F) * (4.0 * lobe * cosine * jacobian)
@@ -158,11 +168,13 @@ def evaluate_btdf(
     )
 
 
-CAP_NODES = 48  # nodes in height and in azimuth on the cap of visible normals
+CAP_NODES = 48  # nodes in height and nodes in azimuth on the spherical cap of visible normals
 CAP_BLOCK = 2**4  # views per block
-MOST_SQUARED = 1.0 - 1e-15  # largest 1 - ior^2; at indices below 3e-8 almost no light passes
+# Largest 1 - ior^2 in the quadrature; if `ior` is below 3e-8, almost no light is transmitted.
+MOST_SQUARED = 1.0 - 1e-15
 
-# Arrays over nodes: cosine wo . h, cosine of wi, length of wi stretched by the roughness, weight.
+# Four values per quadrature node: the cosine wo . wh, the cosine of wi, the length of
+# (alpha_x x, alpha_y y, z) of wi, and the weight.
 Nodes: TypeAlias = tuple[Array, Array, Array, Array]
 
 
@@ -174,15 +186,15 @@ def dielectric_transmittance_dir(
     ior: ArrayLike,
     shadow: bool = True,
 ) -> Array:
-    """Transmitted share of the light from `wo`, by quadrature.
+    """Fraction of the light from `wo` that is transmitted, by quadrature.
 
         T(wo) = ior^2 integral of dielectric_btdf |mu_i| over the hemisphere of wi
 
     Result (..., C): in [0, 1] if alpha_x and alpha_y are equal; tint (1 - F(mu_o)) at alpha 0.
-    Accuracy: absolute error below 2e-4 for `ior` >= 1. For smaller indices it is below 1e-8, because
-    the quadrature is split at the critical angle, where F has an infinite slope. The directional
-    albedo of the BTDF for radiance is T / ior^2. [MaterialX2026], Directional Albedo and Energy
-    Conservation; [Walter2007], Eq. (21).
+    Accuracy: the absolute error is below 2e-4 for `ior` >= 1, and below 1e-8 for `ior` < 1, where
+    the quadrature is split at the critical angle, since the slope of F is infinite at that angle.
+    The directional albedo of the BTDF for radiance is T / ior^2. [MaterialX2026], section
+    Directional Albedo and Energy Conservation; [Walter2007], Eq. (21).
 
         >>> dielectric_transmittance_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], [1.5, 0.75]).round(3)
         array([[0.939],
@@ -201,7 +213,10 @@ def evaluate_transmittance(
     numbers: dict[str, Numbers],
     shadow: bool,
 ) -> Array:
-    """Transmitted share, shape (..., C), for checked inputs; `numbers` includes `ior`."""
+    """Transmitted fraction, shape (..., C), for the Fresnel reflectance F that `at` computes.
+
+    - `vectors`, `numbers`: Validated inputs with and without channels; `numbers` includes `ior`.
+    """
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_roughness(roughness)}
     arguments.checked_switch("shadow", shadow)
@@ -235,7 +250,7 @@ def evaluate_transmittance(
 
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
-    """Quadrature nodes over visible facets; weight 0 if their light does not reach the far side."""
+    """Quadrature nodes over visible facets; a facet that transmits no light has weight 0."""
     height, turn, weight = (arrays.like(each, wo) for each in _nodes(wo.ndim))
     xp, view = array_namespace(wo), wo[:, np.newaxis]
     wh = visible_normal(view, height, turn, roughness[:, np.newaxis])
@@ -247,7 +262,7 @@ def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
 
 @lru_cache(maxsize=2)
 def _nodes(axes: int) -> tuple[Array, Array, Array]:
-    """Random numbers that select visible normals, and weights, on an axis before the view axes."""
+    """Nodes in both random numbers of `visible_normal`, and weights, on a new first axis."""
     x, w = np.polynomial.legendre.leggauss(CAP_NODES)
     around = (np.arange(CAP_NODES) + 0.5) / CAP_NODES
     height, turn = np.meshgrid(0.5 * (x + 1.0), around, indexing="ij")
@@ -256,22 +271,28 @@ def _nodes(axes: int) -> tuple[Array, Array, Array]:
     return height.reshape(shape), turn.reshape(shape), weight.reshape(shape)
 
 
-PASSED_NODES = 40  # Chebyshev nodes of P in the cube root of mu / (mu + scale)
-LEAST_SCALE = 0.05  # scale is alpha or this, if larger: near 0 all nodes would be at grazing
+PASSED_NODES = 40  # Chebyshev nodes in the cube root of mu (1 + scale) / (mu + scale)
+# `scale` is the larger of alpha and LEAST_SCALE. If `scale` were near 0, all nodes would be near
+# grazing.
+LEAST_SCALE = 0.05
 
 
 def reversed_transmittance(
     mu: Array, alpha: float, ior: float, reflected: Callable[[Array], Array]
 ) -> Array:
-    """Share transmitted from the denser side, (N, C), by reversing paths from outside.
+    """Fraction of light that is transmitted from the denser side, (N, C), by reversed paths.
 
-        n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o,  p(wo, wi) = G1(wo) D |wo . wh| / mu_o |d wh / d wi|
+    P(wo) is the fraction that is transmitted from outside. Reversing a path exchanges wo and wi:
 
-    P is the share transmitted from outside. It follows that T(wi, wo) = P(wo) G1(wo) / G1(wi) p(wi, wo): the share is
-    the mean of P G1(wo) / G1(wi) over the facets visible from wi. n^2 times its cosine-weighted average is P's average.
+        n^2 mu_i T(wi, wo) = P(wo) p(wo, wi) mu_o
+        p(wo, wi) = G1(wo) D |wo . wh| / mu_o |d wh / d wi|
+
+    Hence T(wi, wo) = P(wo) G1(wo) / G1(wi) p(wi, wo), and the fraction transmitted from the denser
+    side is the mean of P G1(wo) / G1(wi) over the facets visible from wi. n^2 times the
+    cosine-weighted average of this fraction is the average of P.
 
     - `mu` (N,): Cosines of views on the denser side.
-    - `ior`: Index of the far side relative to the view's side, below 1.
+    - `ior`: Index of refraction of the far side relative to the view's side, below 1.
     - `reflected`: Function from cosines outside, (M,), to the albedo 1 - P, (M, C).
     """
     s, scale = chebyshev_nodes(PASSED_NODES) ** 3, max(alpha, LEAST_SCALE)
@@ -287,24 +308,29 @@ def reversed_transmittance(
     return np.stack([np.sum(weight * row, axis=axes) for row in rows], axis=-1)
 
 
-DARKEST, BRIGHTEST = 0.01, 0.99  # range of normal reflectances that MaterialX inverts to an index
+# MaterialX clamps the reflectance along the normal to this range, then converts it to an index of
+# refraction.
+DARKEST, BRIGHTEST = 0.01, 0.99
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A way to derive the index and curve of transmission from the node's inputs.
+    """A way to derive the index of refraction and F from the inputs of the Schlick node.
 
-    - `index`: "average": one index, from the mean of color0's channels; "channel": one index per
-      channel.
+    - `index`: "average" for one index of refraction from the mean of color0's channels, or
+      "channel" for one index of refraction per channel.
     """
 
     title: str
     curve: Callable[..., Array]  # F for transmission, as a function of the cosine outside the solid
     index: str = "average"
-    least: float = DARKEST  # smallest reflectance that is converted to an index
+    least: float = DARKEST  # smallest reflectance that is converted to an index of refraction
 
     def at(self, cosine: Array, ior: Array, **inputs: Array) -> Array:
-        """F at a cosine on the light's side: inside if the index is below 1; 1 if totally reflected."""
+        """F for the cosine wo . wh, or 1 if light is totally reflected.
+
+        If `ior` is below 1, wo is inside the solid, and F is evaluated for the cosine outside.
+        """
         xp = array_namespace(cosine, ior)
         squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / xp.maximum(ior, 1e-50) ** 2
         inside = ior < 1.0
@@ -313,7 +339,7 @@ class Reading:
 
 
 def _whole(cosine: Array, color0: Array, color82: Array, color90: Array, exponent: Array) -> Array:
-    """The node's Fresnel curve F, clamped to [0, 1]."""
+    """The Fresnel curve F of the Schlick node, clamped to [0, 1]."""
     return within(fresnel.schlick(cosine, color0, color82, color90, exponent))
 
 
@@ -342,12 +368,14 @@ READINGS = {
 
 @any_array
 def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
-    """Index of refraction from the reflectance along the normal: per channel, (..., C), or one, (..., 1).
+    """Index of refraction of the Schlick node from the reflectance along the normal.
 
         ior = (1 + sqrt(r)) / (1 - sqrt(r)),  r in [0.01, 0.99]
 
-    The limits of r are from stock MaterialX. The index lies in [1.22, 399], so a reflectance of 0 still refracts.
-    [MaterialX2026], Generalized Schlick Equations, Thin-Film Iridescence.
+    Result (..., C) or (..., 1): one index per channel, or one index for all channels, depending on
+    the reading. The limits of r are from stock MaterialX. They keep the index in [1.22, 399], so
+    light is refracted even if the reflectance is 0. [MaterialX2026], sections Generalized Schlick
+    Equations and Thin-Film Iridescence.
 
         >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)
         (array([2.2299]), array([1.5, 3. ]))
@@ -358,7 +386,7 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
 
 def index_of(reflectance: Array, least: float) -> Array:
-    """Index of refraction from a reflectance along the normal, clamped to [least, 0.99]."""
+    """Index of refraction from a reflectance along the normal that is clamped to [least, 0.99]."""
     amplitude = arrays.root(within(reflectance, least, BRIGHTEST))
     return (1.0 + amplitude) / (1.0 - amplitude)
 
@@ -381,10 +409,11 @@ def generalized_schlick_btdf(
 ) -> Array:
     """Transmission of `generalized_schlick_bsdf`, scatter modes T and RT.
 
-    F is evaluated at the angle outside, whichever side the light comes from, as in renderers. This
-    makes the value divided by the squared index reciprocal. Taken literally, the specification uses
-    the angle of the incident light, which gives a different F for each direction of a path.
-    [MaterialX2026], Microfacet BTDF; generalized_schlick_bsdf.
+    As in renderers, F is evaluated at the angle outside the solid for light from either side. So
+    the BTDF divided by the squared index of refraction is reciprocal. Taken literally, the
+    specification evaluates F at the angle of the incident light, so F would depend on the direction
+    in which light follows a path. [MaterialX2026], sections Microfacet BTDF and
+    generalized_schlick_bsdf.
 
         >>> pair = [0.6, 0.0, 0.8], [-0.4, 0.0, -0.916515]
         >>> generalized_schlick_btdf(*pair, 0.04, 1.0, 1.0, [0.3, 0.3], 5.0).round(4)
@@ -415,10 +444,11 @@ def generalized_schlick_transmittance_dir(
     inside: bool = False,
     shadow: bool = True,
 ) -> Array:
-    """Transmitted share of the light from `wo`, by quadrature.
+    """Fraction of the light from `wo` that is transmitted, by quadrature.
 
-    Accuracy: absolute error below 2e-4 from outside for exponents >= 1, and below 1e-8 from inside. [MaterialX2026],
-    Directional Albedo and Energy Conservation.
+    Accuracy: the absolute error is below 2e-4 for a view from outside and an exponent of at least
+    1, and below 1e-8 for a view from inside. [MaterialX2026], section Directional Albedo and Energy
+    Conservation.
 
         >>> wo, alpha = [0.6, 0.0, 0.8], [0.3, 0.3]
         >>> generalized_schlick_transmittance_dir(wo, [0.04, 0.25], 1.0, 1.0, alpha, 5.0).round(3)
@@ -445,7 +475,10 @@ def _by_index(
     reading: str,
     inside: bool,
 ) -> Array:
-    """Call `evaluate(F, index, colors, numbers)` once, or per channel if channels have own indices."""
+    """Result of `evaluate(F, index, colors, numbers)`, called once or for each channel.
+
+    `evaluate` is called for each channel if each channel has its own index of refraction.
+    """
     how = READINGS[arguments.checked_choice("reading", reading, READINGS)]
     arguments.checked_switch("inside", inside)
     material = {name: arguments.checked_color(name, value) for name, value in colors.items()}

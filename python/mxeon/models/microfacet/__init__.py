@@ -10,11 +10,13 @@ Albedos are integrals over the slopes of microfacets, as accurate as `ggx_albedo
 In retroreflective mode, wo is mirrored about the normal. The albedo stays the same, since half a
 turn about the normal maps the surface onto itself.
 
-- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent +x, z >= 0.
+- `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, tangent
+  +x, z >= 0.
 - `tint` (..., C): Color per channel, in [0, 1]; a number is one channel.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
-- `ior`, `extinction` (..., C): Complex index of refraction relative to the exterior medium, per channel, in [0, 1e50].
-  A dielectric has one `ior` for all channels, (...); with `ior` 0, its F is 1.
+- `ior`, `extinction` (..., C): Complex index of refraction relative to the exterior medium, per
+  channel, in [0, 1e50]. A dielectric has one `ior` for all channels, (...); with `ior` 0, the
+  reflectance F of the dielectric is 1.
 - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at the angle
   acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
@@ -24,8 +26,8 @@ turn about the normal maps the surface onto itself.
 
 Result (..., C): An albedo, or the BRDF in 1/sr, which is at least 0 and has no upper bound at
 grazing angles and for small alpha.
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations

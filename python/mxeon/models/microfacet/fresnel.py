@@ -5,13 +5,14 @@ F_ss, the cosine-weighted average of F over the hemisphere, is twice the integra
 mu = 0 to 1. Section names refer to [MaterialX2026].
 
 - `mu` (...): Cosine of the angle between a direction and a microfacet normal, in [0, 1].
-- `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number is one channel.
+- `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number is
+  one channel.
 - `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at the angle
   acos(1/7), and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent q of the Schlick curve, in [0, 1e50].
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 """
 
 from __future__ import annotations
@@ -215,8 +216,8 @@ def _external_avg(gap: Array) -> Array:
 
     The fourth and fifth terms are infinite at t = 0. Because n^2 + 2 n - 1 = 2 n + 2 n sinh t, the
     fourth term is a sum of two parts. The sum of the part with 2 n and the fifth term is
-    n (2 t coth 2t - 1) / (cosh t sinh 2t). The part with 2 n sinh t is -n / (2 cosh^2 t). The sum of
-    this second part and 1/2 = cosh^2 t / (2 cosh^2 t) is (sinh^2 t - (n - 1)) / (2 cosh^2 t).
+    n (2 t coth 2t - 1) / (cosh t sinh 2t). The part with 2 n sinh t is -n / (2 cosh^2 t). The sum
+    of this second part and 1/2 = cosh^2 t / (2 cosh^2 t) is (sinh^2 t - (n - 1)) / (2 cosh^2 t).
     """
     xp = array_namespace(gap)
     n = 1.0 + gap

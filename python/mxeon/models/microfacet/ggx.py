@@ -13,8 +13,8 @@ components of a vector on the first axis.
 
 Accuracy: the relative error is below 2e-14, except for E_ss.
 
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the shapes do
-not broadcast.
+Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
+shapes do not broadcast.
 
 (1 - E_ss) / E_ss, the energy that single scattering loses divided by the energy that it reflects,
 comes from a table that is computed once. The table has Chebyshev polynomials in sqrt(alpha) and in
