@@ -19,7 +19,7 @@ CONSTANTS = (0.1, 0.25, 0.3, 0.5, 0.75, 1.0)  # possible hard-coded roughnesses
 
 @dataclass(frozen=True)
 class Fault:
-    """A mistake that changes the inputs that a model receives, or the values that it returns."""
+    """A mistake that changes the batch that a model receives, or the model's results."""
 
     key: str  # key of `mxeon.conformance.words.FAULTS`
     batch: Callable[[Batch], Batch] = lambda batch: batch
@@ -118,7 +118,7 @@ ENVIRONMENT_FAULTS = (
 
 
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:
-    """Faults that exchange two inputs, or all inputs of two nodes, such as `top` of `top/weight`."""
+    """Faults that exchange two inputs, or all inputs of two nodes named in paths (`top/weight`)."""
     for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
         yield Fault("inputs_exchanged", partial(_exchanged, *pair), names=pair)
 

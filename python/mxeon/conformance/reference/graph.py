@@ -269,7 +269,7 @@ class Graph(Nodes):
         raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
 
     def _written(self, path: Path, name: str, port: mx.Input) -> Value:
-        """Value of an unconnected input; colors use the color space of the document, lengths meters."""
+        """Value of an unconnected input; a color is in the document's space, a length in meters."""
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port

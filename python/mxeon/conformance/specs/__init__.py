@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All judged nodes, one file per family."""
+"""All nodes that the conformance suite judges; each module covers a family of nodes."""
 
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.clients import CLIENT_FRAME
@@ -16,7 +16,7 @@ from mxeon.conformance.specs.surface_texts import SENTENCES
 from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
-# Every run judges COMMON; the other nodes are judged only if the user names them.
+# Every run judges the nodes of COMMON; other nodes are judged only if the user names the nodes.
 COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS, CLIENT_FRAME)
 # fmt: off
 PBRLIB: tuple[Spec, ...] = (
@@ -24,5 +24,5 @@ PBRLIB: tuple[Spec, ...] = (
     SUBSURFACE, *FILM_SPECS, *UTILITY_SPECS, *SURFACE_SHADERS,
 )
 # fmt: on
-# SENTENCES are judged only if the user names their specification.
+# The sentences of a specification are judged only if the user names the specification.
 ALL: tuple[Spec, ...] = (*DIFFUSE, *PBRLIB, *SURFACE_LOBES, *SENTENCES)

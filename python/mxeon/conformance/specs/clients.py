@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The material that tests bindings of a client's uniforms: a mix of two matte surfaces."""
+"""A material for tests of the uniforms that a client can bind: a mix of two matte surfaces."""
 
 from dataclasses import dataclass
 

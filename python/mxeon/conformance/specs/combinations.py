@@ -17,7 +17,7 @@ from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
-# For a mix of a sum over a base, the slopes by the two albedos are at most 1 and 2.
+# The albedo of a mix of a sum over a base has derivatives of at most 1 and 2 by the two albedos.
 THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
 ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
 THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")
@@ -25,7 +25,7 @@ NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=T
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # The compared values are the same products with an exact factor.
+    # Both compared values are the same product with an exact factor.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }
@@ -41,7 +41,8 @@ SUM = {"sum": over("add", "top", "base")}
 WHITE = nodes.Node(
     "oren_nayar_diffuse_bsdf", "BSDF", text=nodes.input_text("color", "color3", np.ones(3))
 )
-# Opaque lobes in mixes with connected weights. MaterialX multiplies the lobes by these weights.
+# Opaque lobes in mixes whose weights are connected to other nodes. MaterialX multiplies the lobes
+# by the connected weights.
 MASKED = {
     **dict.fromkeys(("white", "other"), WHITE),
     **dict.fromkeys(("inner", "outer"), nodes.Node("multiply", "float")),
@@ -49,7 +50,7 @@ MASKED = {
     "both": over("mix", "masked", "other", text=nodes.connection_text("mix", "float", "outer")),
     "lobe": over("layer", "both", "base"),
 }
-# Title of each row of `mxeon.models.nodes.combinations`, and the nodes that combine its lobes.
+# Title of each row of `mxeon.models.nodes.combinations`, and the nodes that combine lobes.
 # fmt: off
 NETWORKS: dict[str, tuple[str, dict[str, nodes.Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),
@@ -73,14 +74,14 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CombinedSpec(PbrSpec):
-    """A node that combines lobes; their own weights are 1."""
+    """A node that combines lobes of weight 1."""
 
     requires = spec.Ability.LOBE | spec.Ability.COMBINATION
-    # If several nodes use a lobe, MaterialX applies a connected mix weight to all of these uses.
+    # If several nodes use a lobe, MaterialX applies a connected mix weight to every use.
     plain = ("lobes", "inputs from an image")
 
     def batches(self, counts: samples.Counts) -> tuple[samples.Batch, ...]:
-        """Random and special pairs; pairs outside the domain are left to specs of single lobes."""
+        """Random and special pairs; only specs of single lobes test pairs outside the domain."""
         rng, count = samples.generator(), counts.pairs
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
         special = samples.special_directions(rng)

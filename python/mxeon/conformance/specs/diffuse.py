@@ -20,24 +20,25 @@ from mxeon.models.nodes.node import PbrNode, Variant
 from mxeon.models.table import Model
 from mxeon.shaders.nodes import EON, FLAG, OREN_NAYAR, document_text, input_text, node_text
 
-EDGES = (0.0, 1e-6, 1e-3, 1.0)  # special colors, and special shares of the largest roughness
+EDGES = (0.0, 1e-6, 1e-3, 1.0)  # special colors, and special fractions of the largest roughness
 PICTURE_INPUTS: tuple[Values, ...] = (
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5, "weight": 0.5},
 )
-COUNTS = Counts(nodes=16)  # a quadrature with an error of 2e-8
-LOSS_FIT = 2.7e-7  # relative error of the fit of H, the loss in FON: tools/fits/fon_loss.py
+COUNTS = Counts(nodes=16)  # a quadrature with this number of nodes has an error of 2e-8
+LOSS_FIT = 2.7e-7  # relative error of the fit of H, the loss of FON (tools/fits/fon_loss.py)
 
 VALUE = sum_in(
     Quantity.DIFFERENCE,
     roundings(28, "(14, of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
-# 12 roundings in the longest chain of operations, two in the cosine, two for the fit of H.
+# The 16 roundings are 12 in the longest chain of operations, two in the cosine, and two for the fit
+# of H.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
-# A rounding of a cosine of at least 1/4 counts 4 times in s / t, 3 times in a sine, and twice in
-# other factors.
+# If a cosine is at least 1/4, a rounding of the cosine grows 4 times in s / t, 3 times in a sine,
+# and 2 times in other factors, in all 9 times.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
@@ -119,11 +120,12 @@ class DiffuseModelSpec(ScatteringSpec):
 
 
 def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
-    """The row of a node with its expected model; the variants are all other known models."""
+    """The expected model of a node as a table row, with all other known models as variants."""
     known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
     rows = {each.name: each for each in known}
     expected = reference.diffuse_model(model)
-    # Of models with equal BRDFs, only one is a variant for values; all are variants for albedos.
+    # If models have equal BRDFs, only one model is a variant for values, but all models are
+    # variants for albedos.
     owners = {each.brdf_of: each.name for each in (*rows.values(), expected)}
     variants = []
     for name, each in rows.items():
@@ -135,7 +137,7 @@ def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
 
 
 def _limited(function: Callable[..., Array], largest: float) -> Callable[..., Array]:
-    """The function with a roughness of at most `largest`; the inputs are its last argument."""
+    """The function, called with a roughness of at most `largest`; the last argument has inputs."""
 
     def limited(*arguments: Any) -> Array:
         *directions, inputs = arguments
@@ -178,9 +180,10 @@ DIFFUSE = tuple(
 class SurfaceLobe(DiffuseModelSpec):
     """The diffuse lobe of a surface shader whose other lobes cannot be disabled.
 
-    The other lobes depend only on the directions, so two evaluations isolate the diffuse lobe: with
-    a black color, only the other lobes remain; with white at roughness 0, every model is Lambert,
-    which gives the share of light that reaches the lobe and returns.
+    The other lobes depend only on the directions, so two evaluations isolate the diffuse lobe. With
+    a black color, only the other lobes remain. With a white color and a roughness of 0, every
+    diffuse model is Lambert's, so the result is the share of light that reaches the diffuse lobe
+    and returns.
     """
 
     requires = Ability.BELOW
@@ -200,7 +203,7 @@ class SurfaceLobe(DiffuseModelSpec):
 
 
 # fmt: off
-# Title, specified model, names of color and roughness, and additional inputs.
+# Title, specified model, names of the inputs for color and roughness, and additional inputs.
 ROWS: tuple[tuple[str, str, tuple[str, ...], tuple[tuple[str, str, str], ...]], ...] = (
     ("open_pbr_surface", "eon", ("base_color", "base_diffuse_roughness"), ()),
     ("open_pbr_surface, thin-walled", "eon", ("subsurface_color", "base_diffuse_roughness"),

@@ -18,7 +18,7 @@ from mxeon.shaders import nodes, scene
 
 
 def title_of(row: emissions.Emission | Medium, kind: str) -> str:
-    """Title of a row, with types if MaterialX has the category for several types."""
+    """Title of a row; the title includes types if MaterialX has the category for several types."""
     if "/" not in next(iter(row.inputs)):  # a node that combines no other nodes
         return row.category
     factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
@@ -33,9 +33,9 @@ def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
 def chained(
     row: emissions.Emission | Medium, kind: str, source: str, name: str, text: str = ""
 ) -> dict[str, nodes.Node]:
-    """The row's node, called `name`, and the nodes of category `source` that it combines.
+    """The row's node, called `name`, and nodes of category `source` that the row's node combines.
 
-    An input whose path has the name of a node belongs to that node.
+    An input whose path contains the name of a node belongs to that node.
     """
     paths = (each.rpartition("/")[0] for each in row.inputs)
     sources = tuple(dict.fromkeys(path for path in paths if path not in ("", name)))
@@ -50,7 +50,8 @@ LEAST_FALLOFF = 0.01  # smallest difference between a cone's outer and inner ang
 LEAST_CONE = 1e-3  # smallest full angle of a narrow cone, as a share of 360 degrees
 EXPONENTS = (0.5, 20.0)
 INNER, OUTER = "inner_angle", "outer_angle"
-# Coefficients of media in 1/m: one meter takes 0.1 % of the light, or all but 1e-7.
+# Coefficients of media in 1/m. Over one meter, a medium with the smallest coefficient takes 0.1 %
+# of the light, and a medium with the largest coefficient leaves 1e-7 of the light.
 LEAST, LARGEST = 1e-3, 16.0
 INPUTS = {
     each.name: each
@@ -82,16 +83,16 @@ FACTORS = {
     (media.FACTOR, "color3"): replace(color(media.FACTOR, edges=()), high=3.0),
 }
 
-# Smallest difference between the cosines of a view and of a cone without falloff; closer to the
-# cone's edge, roundings decide whether the view is inside.
+# Smallest difference between the cosines of a view and of a cone without falloff. For a smaller
+# difference, roundings decide whether the view is inside the cone.
 EDGE = 1e-3
 SMALL = scene.Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
-# Both cosines of a cone have ten roundings in all, and their differences have two.
+# The two cosines of a cone have ten roundings in all, and the differences of cosines have two.
 CONE_ROUNDINGS = 12
-# Tolerances by name of the model's row; all other rows have UNIFORM.
+# Tolerances by the name of the model's row. The tolerance of all other rows is UNIFORM.
 # fmt: off
 ERRORS = {
     "conical": sum_of(
@@ -133,7 +134,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return nodes.document_text(axis + text + EMITTING_TEXT)
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
-        """Radiance toward each view, (N, 3); components that round above 1 are clipped."""
+        """Radiance toward each view, (N, 3); components of views that round above 1 are clipped."""
         return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property
@@ -155,7 +156,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
 
 
 class ConeSpec(EmissionSpec):
-    """An emission inside a cone around an input axis."""
+    """A node that emits light inside a cone; the axis of the cone is an input."""
 
     def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
         """Random inputs: half of the cones have a falloff, and a quarter are narrow.
@@ -171,7 +172,7 @@ class ConeSpec(EmissionSpec):
         return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views; views in falloffs or close to edges of cones; and rotated cones."""
+        """Random views, views in falloffs or close to the edges of cones, and rotated cones."""
         rng, count = generator(), counts.few
         inputs = self.random_inputs(rng, count)
         inputs[INNER][0] = inputs[OUTER][0] = 0.0  # a cone that contains only its axis
@@ -188,7 +189,10 @@ class ConeSpec(EmissionSpec):
         return *super().batches(counts), _without_edges(near), _without_edges(turned)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by 1 + the falloff's largest slope within CONE_ROUNDINGS of the cosine."""
+        """Divide values by 1 plus the largest slope of the falloff near the cosine of the view.
+
+        A cosine is near if the difference is at most CONE_ROUNDINGS roundings.
+        """
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
         width = np.where(outer > inner, cone_width(inner, outer), np.inf)
@@ -224,7 +228,7 @@ class AbsentSpec(spec.Spec):
         return nodes.document_text(self.text)
 
 
-# A definition without any implementation, which a control judges.
+# A node definition without any implementation; a control must find the implementation missing.
 UNIMPLEMENTED = AbsentSpec(
     title="a node without an implementation",
     node="mxeon_absent",
@@ -298,7 +302,7 @@ EMISSION_SPECS = tuple(
 
 # --- media: VDF nodes between two transmitting lobes ----------------------------------------------
 
-# The exponential of a sum, a product, and the quotient of two results have 12 roundings.
+# The exponential of a sum, a product, and the quotient of two results have 12 roundings in all.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
 GLASS = nodes.Node(
     "dielectric_bsdf",
@@ -327,7 +331,7 @@ class MediumSpec(spec.RowSpec[media.Value]):
         return nodes.document_text(media + nodes.network_text(SLAB) + nodes.SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views and inputs, without grazing views, whose refraction rounds badly."""
+        """Random views and inputs, without grazing views, whose refraction amplifies roundings."""
         rng, count = generator(), counts.pairs
         wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Spec of the hair node, with regions of views and roughnesses in which known shaders differ.
 
-The longitudinal density M has the variance v, the azimuthal density N the scale s.
+The longitudinal density M has the variance v, and the azimuthal density N has the scale s.
 """
 
 import math
@@ -23,9 +23,9 @@ from mxeon.models.nodes.node import Scattering
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
 WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrated lobes
-# Share of the light in R, TT, TRT and all higher orders that comes from the viewer's side.
+# Shares of the light in R, in TT, in TRT and in all higher orders that come from the viewer's side.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])
-STEP = 1e-6  # step of an angle, in radian, for finite differences
+STEP = 1e-6  # step of an angle, in radians, for finite differences
 LEAST = 0.01  # errors are relative to the larger of this number and the value
 
 # fmt: off
@@ -45,7 +45,7 @@ INPUTS = (
 )
 # fmt: on
 
-# A lobe of variance v falls from the largest pi f, 1e5, to 1 within an angle of REACH sqrt(v).
+# A lobe of variance v falls from 1e5, the largest pi f, to 1 within an angle of REACH sqrt(v).
 REACH = math.sqrt(2.0 * math.log(1e5))
 ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all later operations
 
@@ -53,7 +53,8 @@ ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all later operations
 def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Term, ...]:
     """Error terms of pi f for lobes of at least these widths; each angle has `angle` roundings.
 
-    The largest slopes by an angle are REACH / sqrt(variance) for log M, 1 / (SCALE scale) for log N.
+    The largest derivative by an angle is REACH / sqrt(variance) for log M, and 1 / (SCALE scale)
+    for log N.
     """
     slope = REACH / math.sqrt(variance) + 1.0 / (SCALE * scale)
     lobe = f"v {variance:g} and s {scale:g}"
@@ -62,11 +63,12 @@ def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Ter
 
 
 VALUE = sum_of(*lobe_terms(LEAST_VARIANCE, LEAST_SCALE), quantity=Quantity.FULL_SPHERE)
-# Values in a rotated frame are compared with those in the standard frame; the rotation adds five
+# Values in a rotated frame are compared with values in the standard frame. The rotation adds five
 # roundings to each angle.
 TWO_LOBES = lobe_terms(LEAST_TURNED**2, LEAST_TURNED, 2 * (ANGLE + 5))
 FRAME = sum_of(*TWO_LOBES, quantity=Quantity.FULL_SPHERE)
-# Mean absolute slopes of log M, a Gaussian, and of log N, a logistic density.
+# Mean absolute slope of log M plus mean absolute slope of log N. M is a Gaussian density, and N is
+# a logistic density.
 MEAN_SLOPE = math.sqrt(2.0 / (math.pi * WIDE_VARIANCE)) + 0.5 / (SCALE * WIDE_SCALE)
 MEAN = sum_of(
     roundings(MEAN_SLOPE * ANGLE, "(12 of an angle, times the mean slope of the logarithm)"),
@@ -90,18 +92,18 @@ class Region:
     """A check of the hair node in a range of views and roughnesses."""
 
     claim: str
-    azimuths: tuple[float, float] = (0.3, 1.2)  # angles of views to the normal, in radian
+    azimuths: tuple[float, float] = (0.3, 1.2)  # angles of views to the normal, in radians
     variances: tuple[float, float] = (0.2, 1.0)
     scales: tuple[float, float] = (0.2, 1.0)
     tints: Values = field(default_factory=lambda: R_AND_TT)
     tilt: float = 0.05  # largest deviation of `cuticle_angle` from 1/2
-    ior: tuple[float, float] | None = None  # range of the index; None for the range of INPUTS
+    ior: tuple[float, float] | None = None  # range of the IOR; None for the range of INPUTS
     form: str = ""  # title of the permitted approximation in this region
 
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
 # fmt: off
-# Regions by the key of their check.
+# Regions by the key of the check that covers a region.
 REGIONS = {
     "each_lobe": Region("Each lobe matches the equations: R, TT, and TRT with all higher orders.",
                         tints=LOBE_TINTS, form=UNIFORM),
@@ -131,12 +133,12 @@ class HairSpec(PbrSpec):
     counts: Counts = COUNTS
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """pi f with occlusion, (N, 3)."""
+        """Values pi f, times the occlusion, (N, 3)."""
         occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
         return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
     def sky(self, batch: Batch) -> Array:
-        """Mean of both sides of the sky, weighted by their shares of the scattered light."""
+        """Mean of both sides of the sky, weighted by each side's share of the scattered light."""
         inputs = broadcast_inputs(batch)
         A = chiang_hair_attenuation(batch.wo, inputs["ior"], inputs["absorption_coefficient"])
         shares = A * np.stack([inputs[name] for name in (*TINTS, TINTS[-1])], axis=-1)
@@ -145,7 +147,7 @@ class HairSpec(PbrSpec):
         return np.asarray(front * near + (1.0 - front) * far)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by max(value, LEAST) plus the slopes by the four angles of a pair."""
+        """Divide values by max(value, LEAST) plus absolute derivatives by the four angles."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:
@@ -155,7 +157,7 @@ class HairSpec(PbrSpec):
         return compared.over(total)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, as many pairs inside lobes, and special pairs."""
+        """Random pairs, the same number of pairs inside lobes, and special pairs."""
         rng, count = generator(), counts.pairs
         wo, inputs = samples.directions(rng, count), self.random_inputs(rng, count)
         free = samples.directions(rng, count) * _sides(rng, count)
@@ -171,7 +173,7 @@ class HairSpec(PbrSpec):
         return tuple(batch.altered(cuticle_angle=0.5) for batch in super().views(batches, counts))
 
     def edges(self, counts: Counts) -> Batch:
-        """Special pairs and pairs along the axes, with inputs at the ends of their ranges."""
+        """Special pairs and pairs along the axes, with inputs at the ends of the inputs' ranges."""
         rng = generator()
         along = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
         pairs = np.repeat(along, 4, axis=0), np.tile(along, (4, 1))
@@ -188,7 +190,7 @@ class HairSpec(PbrSpec):
         return replace(batch.altered(**wide), wi=batch.wi * sides)
 
     def region(self, key: str, count: int) -> Batch:
-        """Pairs inside the lobes, for views and roughnesses of a row of REGIONS."""
+        """Pairs inside the lobes, for views and roughnesses in a region of REGIONS."""
         rng, row = generator(), REGIONS[key]
         sine = 0.9 * (2.0 * rng.random(count) - 1.0)
         low, high = row.azimuths
@@ -212,7 +214,7 @@ class HairSpec(PbrSpec):
         return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # A Gauss rule in the sine of the inclination, and uniform azimuths, over the whole sphere.
+        # Cover the sphere by a Gauss rule in the sine of the inclination, and by uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         phi = np.pi * (np.arange(2 * count) + 0.5) / count
         sine, angle = (each.ravel() for each in np.meshgrid(x, phi))
@@ -240,7 +242,7 @@ def in_lobes(rng: samples.Rng, wo: Array, inputs: dict[str, Array]) -> Array:
     count = len(wo)
     lobe, chosen = rng.integers(0, 3, count), np.arange(count)
     v, s = (np.stack([inputs[name] for name in ROUGHNESSES])[lobe, chosen]).T
-    # The inclination is normally distributed around a direction that the cuticle's tilt changes.
+    # The inclination is normally distributed around an angle that the cuticle's tilt shifts.
     view, _ = section(wo.T, inputs["ior"])
     tilt = (2.0 - 3.0 * lobe) * np.pi * (inputs["cuticle_angle"] - 0.5)
     theta = -np.arcsin(np.clip(view.sin_o, -1.0, 1.0)) - tilt

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of BSDF nodes, one per mode of a node, and error terms that several nodes have."""
+"""Specs of BSDF nodes, one spec per mode of a node, and error terms that several nodes share."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -48,7 +48,7 @@ def lobe_errors(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
-    """A node that scatters light, with the equations of `row`."""
+    """A node that scatters light by the equations of `row`."""
 
     row: PbrNode
 
@@ -66,7 +66,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return material_text(self.node, {**self.mode, **(inputs or {})}, self.node, self.types)
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """pi f |cos(theta_i)| with weight and occlusion, (N, 3); 0 for an unlit side."""
+        """Values pi f |cos(theta_i)|, times weight and occlusion, (N, 3); 0 on the unlit side."""
         wi = batch.wi.copy()
         wi[:, 2] = self.side * np.abs(wi[:, 2])
         lit = (batch.wi[:, 2:] < 0.0) == self.row.transmits
@@ -87,7 +87,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return samples.sky(self.side * batch.normal)
 
     def integral(self, batch: Batch) -> Array:
-        """Integral of the values, including the weight, (N, 3)."""
+        """Integral of the values over all lights, including the weight, (N, 3)."""
         return _albedo(self.row.integral or self.row.albedo, batch)
 
     @property
@@ -101,7 +101,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
     @property
     def throughput_candidates(self) -> tuple[Candidate, ...]:
-        """Candidates for a throughput: 1 - E of each model, or 1."""
+        """Candidates for a throughput: 1 minus the albedo of each model, or 1."""
         candidates = [Candidate(self.row.title, self.throughput)]
         if any(name in ABSORBING for name in self.row.inputs):
             colored = partial(_throughput, albedo=self.row.albedo, colored=True)
@@ -116,13 +116,13 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return spec.draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Inputs for which a quadrature is accurate; by default, the same inputs."""
+        """Inputs changed so that a quadrature is accurate; the default is no change."""
         return inputs
 
     def integrated(
         self, counts: Counts, adapt: Callable[[dict[str, Array]], dict[str, Array]]
     ) -> tuple[Batch, Array]:
-        """Random materials, each lit from all directions of a quadrature, with their weights.
+        """Random materials, each lit from all directions of a quadrature, and quadrature weights.
 
         `adapt` limits the inputs to values that a backend supports.
         """
@@ -151,13 +151,13 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
 
 class Mode(spec.Names):
-    """Fields of a spec that come from its row."""
+    """Fields of a spec that a row of the models' table determines."""
 
     row: PbrNode
 
 
 def mode_of(row: PbrNode, title: str = "") -> Mode:
-    """Fields of a row's spec; by default, the title lists the inputs that select the mode."""
+    """Fields of the spec of a row; the default title lists the inputs that select the mode."""
     words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
     return {**spec.named(row, title or ", ".join(words)), "row": row}
 
@@ -184,7 +184,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Zero and, for a transmitting lobe, a reflection."""
+        """Candidates in addition to models: zero and, for a transmitting lobe, a reflection."""
         if not self.row.transmits:
             return (spec.ZERO,)
         opaque = replace(self, row=replace(self.row, transmits=False))
@@ -203,11 +203,11 @@ class PbrSpec(ScatteringSpec):
         return tuple(batch.first(counts.albedos) for batch in views)
 
     def edges(self, counts: Counts) -> Batch:
-        """Special directions, some opposite each other, and extreme inputs (an index of 0)."""
+        """Special directions, also opposite directions, with extreme inputs such as an IOR of 0."""
         rng = samples.generator()
         wo, wi = samples.special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
-        # Only some pairs with an extinction of 0 have an index of 0.
+        # Only some of the pairs with an extinction of 0 have an IOR of 0.
         zeros = ("roughness", 0, 4), ("ior", 0, 3), ("extinction", 0, 6), ("extinction", 1, 6)
         for name, start, step in zeros:
             if name in inputs:
@@ -217,7 +217,7 @@ class PbrSpec(ScatteringSpec):
         return Batch(wo, wi, inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Gauss nodes in cosine, dense at the horizon and the normal, and uniform azimuths.
+        # Use Gauss nodes in the cosine, dense at horizon and normal, and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)
@@ -230,7 +230,7 @@ class PbrSpec(ScatteringSpec):
 
 
 def uncolored(batch: Batch) -> Batch:
-    """The batch with white for all colors that only absorb light."""
+    """The batch with all colors that only absorb light replaced by white."""
     return batch.altered(**{each: samples.WHITE for each in ABSORBING if each in batch.inputs})
 
 
@@ -242,7 +242,7 @@ def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
 def _throughput(
     batch: Batch, albedo: Callable[[Array, Inputs], Array], colored: bool = False
 ) -> Array:
-    """1 - E, at least 0, (N, 3); unless `colored`, E is the albedo without absorption."""
+    """1 minus the albedo, at least 0, (N, 3); unless `colored`, the albedo excludes absorption."""
     return np.maximum(1.0 - _albedo(albedo, batch if colored else uncolored(batch)), 0.0)
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Specs of the microfacet nodes in scatter modes R, T and RT, and under a thin film.
 
-E_ss is the albedo of GGX facets that reflect all light, without multiple scattering; F_ss is the
+E_ss is the albedo of GGX facets that reflect all light, without multiple scattering. F_ss is the
 average of a Fresnel curve. Compensation multiplies values by 1 + F_ss (1 - E_ss) / E_ss.
 """
 
@@ -29,16 +29,17 @@ from mxeon.models.nodes.node import Scattering
 COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # the models are slow
 LEAST_ALPHA = 1e-3  # least alpha of random pairs
 LEAST_STRETCHED = 0.05  # least alpha and cosine of anisotropic lobes with measured albedos
-LEAST_INVERTED = 0.1  # least index of a dielectric before the index is inverted
-LEAST_INDEX = 1.05  # least index above 1 in the domain of tools/fits/ggx_cosine.py
+LEAST_INVERTED = 0.1  # smallest IOR of a dielectric before the IOR is inverted
+LEAST_INDEX = 1.05  # smallest IOR above 1 in the domain of the fit by tools/fits/ggx_cosine.py
 COSINE_STEP = 2.0**-18  # largest difference between wo . wh and wi . wh
-RIM_COLOR = 0.05  # least |wo + wi|, unless a channel of color90 is as large
-LEAST_TANGENT_ALPHA = 0.05  # least alpha with rotated tangents: roundings are divided by alpha
+RIM_COLOR = 0.05  # smallest |wo + wi|, unless a channel of color90 is at least 0.05
+# Smallest alpha of lobes with rotated tangents. Roundings of a tangent are divided by alpha.
+LEAST_TANGENT_ALPHA = 0.05
 LEAST_TANGENT_COSINE = 0.1  # least cosine with rotated tangents
 COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which Fresnel curves are tested for values below 0
 
 # fmt: off
-# With the first index of `materials`, pictures reflect enough light for the controls to fail.
+# The first IOR of `materials` reflects enough light in pictures for the controls to fail.
 INDEX = spec.Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
               beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
@@ -75,24 +76,26 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average of a film's reflectance is worst for a bubble: a film around index 1.
+# MaterialX's average of a film's reflectance is worst for a bubble, a film around an IOR of 1.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
 
 # Largest errors of the shaders' fits; scripts in tools/fits measure these errors.
-ESS_FIT = 5e-4  # E_ss: ggx_albedo.py
-SMOOTH_ESS_FIT = 5.3e-5  # E_ss of smooth lobes for cosines of at least 0.05: ggx_albedo.py
-# Error of a compensated value due to the fit of E_ss, relative above 1: ggx_albedo.py.
+ESS_FIT = 5e-4  # error of E_ss, by ggx_albedo.py
+SMOOTH_ESS_FIT = 5.3e-5  # error of E_ss of smooth lobes at cosines from 0.05, by ggx_albedo.py
+# Error of a compensated value due to the fit of E_ss, by ggx_albedo.py. The errors of values above
+# 1 are relative errors.
 ESS_VALUE_FIT = 1.14e-3
-METAL_FIT = 4.6e-4  # F_ss of a metal: fresnel_average.py
-# Error of a compensated value for an error of 1 in F_ss, relative above 1: ggx_albedo.py.
+METAL_FIT = 4.6e-4  # error of F_ss of a metal, by fresnel_average.py
+# Error of a compensated value for an error of 1 in F_ss, by ggx_albedo.py. The errors of values
+# above 1 are relative errors.
 COMPENSATED = 0.6
-LOBE_FIT = 3.2e-3  # albedo of GGX with a Fresnel curve: ggx_cosine.py
-INSIDE_FIT = 2.8e-2  # albedo of a dielectric with an index below 1: ggx_inside.py
-PASSING_FIT = 3.4e-2  # share of light from the denser side that passes: ggx_inside.py
-DIP_FIT = 5.9e-3  # albedo with the strongest dip at 82 degrees, additionally: ggx_cosine.py
-LEAST_ESS = 1.0 - math.log(2.0)  # E_ss for alpha 1 along the normal
+LOBE_FIT = 3.2e-3  # error of the albedo of GGX with a Fresnel curve, by ggx_cosine.py
+INSIDE_FIT = 2.8e-2  # error of the albedo of a dielectric with an IOR below 1, by ggx_inside.py
+PASSING_FIT = 3.4e-2  # error of the share of light that passes from inside, by ggx_inside.py
+DIP_FIT = 5.9e-3  # additional error of an albedo with the strongest dip, by ggx_cosine.py
+LEAST_ESS = 1.0 - math.log(2.0)  # smallest E_ss, at alpha 1 along the normal
 
 
 def sum_over(directions: int) -> Term:
@@ -107,8 +110,8 @@ def sum_over(directions: int) -> Term:
 HALF_TEXEL = math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS)
 TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, half of one away")
 
-# Errors of the fits for two alphas: the relative error of E_ss, and the error of a dielectric's
-# albedo; largest ratio of the alphas, and least cosine of the view: ggx_anisotropic.py.
+# Errors of the fits for two alphas, by ggx_anisotropic.py: the relative error of E_ss, and the
+# error of a dielectric's albedo. The second row limits the ratio of alphas and the view's cosine.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
 LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
 ANISOTROPIC = Term(ANISOTROPIC_FIT, "the fit of E_ss of two alphas")
@@ -136,7 +139,7 @@ ENVIRONMENT = sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(1024))
 THROUGHPUT = sum_in(Quantity.ALBEDO, ESS, LOBE)
 SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
 # The distribution of normals h is proportional to q^-4 with q^2 = h_z^2 + (h_x / a_x)^2 +
-# (h_y / a_y)^2, whose logarithm has a slope of at most 2 over the least alpha.
+# (h_y / a_y)^2. The logarithm of the distribution has a slope of at most 2 / min(a_x, a_y).
 FRAME = sum_of(
     roundings(
         2 * 2 * 5 / (2 * samples.TURNED[0] * samples.LEAST_TURNED),
@@ -145,7 +148,8 @@ FRAME = sum_of(
 )
 WEAK = "the fit of a cosine at index 1.03, scaled"
 A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss in three cosines,"
-# Errors outside the domains of fits: quantity, input, value of the input, error, and cause.
+# Errors outside the domains of the fits. Each row has a quantity, an input, a value of the input,
+# an error, and the cause of the error.
 BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("throughput", "ior", 1.0015, 9.3e-3, WEAK),
     ("throughput", "ior", 1.02, 2.9e-3, WEAK),
@@ -184,8 +188,8 @@ ERRORS = {
 }
 # fmt: on
 QUADRATURE = 6e-4  # error of an albedo that is a quadrature of exact values
-# MaterialX fits a lobe's albedo in a prefiltered environment as F0 A + F90 B; for white, the error
-# is largest where B is 0.
+# MaterialX fits a lobe's albedo in a prefiltered environment as F0 A + F90 B. If F0 and F90 are 1,
+# the error is largest where B is 0.
 PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
@@ -198,7 +202,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         **lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE),
         **dict.fromkeys(("value", "reciprocity"), VALUE),
         "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
-        # An error of E_ss cancels, because it raises values and lowers throughputs.
+        # An error of E_ss cancels, because the error raises values and lowers throughputs.
         "light": sum_in(Quantity.LIGHT, *throughput.terms[1:], quadrature),
         "methods": ENVIRONMENT.plus(PREFILTERED, few),
         "sky": sum_in(Quantity.IRRADIANCE, Term(2.0 * QUADRATURE, words), sum_over(1024), TEXEL),
@@ -207,7 +211,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacetSpec(lobes.PbrSpec):
-    """A microfacet node in one mode; its values are largest near the mirror direction."""
+    """A microfacet node in one mode; the values are largest near the mirror direction."""
 
     counts: Counts = COUNTS
     least_cosine: float = sheen.FIT_COSINE
@@ -217,7 +221,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The batches of any lobe, and lights near the mirror direction; roughness is isotropic."""
+        """The batches of any lobe, and a batch near the mirror direction; alphas are equal."""
         batches = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*batches, self.mirrored(counts)[0]))
 
@@ -242,9 +246,9 @@ class FacetSpec(lobes.PbrSpec):
         return *super().few(batches, counts), batches[-1].first(counts.few)
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views for albedos, with simplified inputs and without curves that fall below 0.
+        """Views for albedos, with simplified inputs and without negative Fresnel curves.
 
-        Lobes smoother than LEAST_ALPHA become mirrors.
+        Lobes with an alpha below LEAST_ALPHA become perfectly smooth.
         """
         views = []
         for batch in super().views(batches, counts):
@@ -266,7 +270,7 @@ class FacetSpec(lobes.PbrSpec):
         return batches[0].where(known), batches[1].where(known)
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Random views of anisotropic materials, with their albedos."""
+        """Random views of anisotropic materials, and the albedo at each view."""
         rng, count = generator(), counts.materials
         inputs = simple(self.random_inputs(rng, count))
         inputs["roughness"] = rounded(LEAST_STRETCHED ** rng.random((2, count)))
@@ -275,7 +279,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch, self.integral(batch)
 
     def stretched_sums(self, counts: Counts) -> tuple[Batch, Array]:
-        """The views of `stretched`, with their albedos by MaterialX's environment sums."""
+        """The views of `stretched`, and albedos as computed by MaterialX's environment sums."""
         batch, _ = self.stretched(counts)
         return batch, batch.strength * node_albedo(self.node, batch.wo, batch.inputs, summed=True)
 
@@ -284,7 +288,7 @@ class FacetSpec(lobes.PbrSpec):
         return self.values(partial(LOBES[self.node].value, terms=Lobe(uncompensated)), batch)
 
     def summed(self, pairs: Batch) -> Array:
-        """Values without compensation, with G_2 / G_1 at the mean alpha as in MaterialX's sums."""
+        """Values without compensation, with G_2 / G_1 of the mean alpha, as in MaterialX's sums."""
         alpha = pairs.inputs["roughness"]
         mean = np.sqrt(alpha.prod(axis=1))
         weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
@@ -299,14 +303,14 @@ class FacetSpec(lobes.PbrSpec):
         return denser(batch.altered(roughness=rough))
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Inputs with positive Fresnel curves; values clamp curves, the albedo's fit does not."""
+        """Inputs without negative Fresnel curves, which values clamp but fits of albedos do not."""
         changed = simple(inputs)
         if "color82" in changed:
             changed["color82"][falls_below_0(changed)] = 1.0
         return changed
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Reflect the view at visible normals: Gauss nodes in height, uniform in azimuth.
+        # Reflect the view at visible facets, with Gauss nodes in height and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
         size = height.size
@@ -320,7 +324,7 @@ class FacetSpec(lobes.PbrSpec):
 
 
 def denser(batch: Batch) -> Batch:
-    """The batch with inverted indices below 1, whose curves are too steep at a critical angle."""
+    """The batch with IORs below 1 inverted, because curves are too steep at a critical angle."""
     if "tint" not in batch.inputs:
         return batch
     index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
@@ -330,10 +334,10 @@ def denser(batch: Batch) -> Batch:
 def simple(inputs: Mapping[str, Array]) -> dict[str, Array]:
     """Inputs for which the albedo has a closed form and a quadrature is accurate.
 
-    Roughness becomes isotropic. The index of a dielectric becomes 1 or at least LEAST_INDEX: below
-    1, a quadrature does not resolve the critical angle, and in between, shaders are outside the
-    domain of their fits; see docs/loading.md. Color82 becomes at least LEAST_COLOR82, because deep
-    dips of a Fresnel curve at 82 degrees are negative.
+    Roughness becomes isotropic. The IOR of a dielectric becomes 1 or at least LEAST_INDEX. For an
+    IOR below 1, a quadrature does not resolve the critical angle. An IOR between 1 and LEAST_INDEX
+    is outside the domain of the shaders' fits (see docs/loading.md). color82 becomes at least
+    LEAST_COLOR82, because a Fresnel curve with a deep dip at 82 degrees is negative.
     """
     changed = dict(inputs)
     changed["roughness"] = np.repeat(inputs["roughness"][:, :1], 2, axis=1)
@@ -353,10 +357,10 @@ def _with_one_alpha(batch: Batch) -> Batch:
 def _has_curve(batch: Batch) -> samples.Mask:
     """Mask of pairs whose Fresnel curve is accurate in float32 and at least 0.
 
-    A correct shader may compute the curve from wo . wh or from wi . wh. Their difference is that of
-    the squared lengths of wo and wi, a rounding, over |wo + wi|, which is too much for nearly
-    opposite directions. There, a curve with a dark color90 also has few digits, and shaders clamp
-    the cosine to GRAZING.
+    A correct shader may compute the curve from wo . wh or from wi . wh. The two cosines differ by
+    the difference of the squared lengths of wo and wi, which is a rounding, divided by |wo + wi|.
+    If wo and wi are nearly opposite, the cosines differ too much, a curve with a dark color90 has
+    few correct digits, and shaders clamp the cosine to GRAZING.
     """
     length = np.linalg.norm(batch.wo + batch.wi, axis=1)
     rounding = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
@@ -385,7 +389,7 @@ def _below_0(inputs: Mapping[str, Array], cosine: Array | float) -> samples.Mask
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
-    """Views reflected at visible GGX facets, which two numbers in [0, 1] select, (N, 3)."""
+    """Views, (N, 3), reflected at visible GGX facets, which two numbers in [0, 1] select."""
     return samples.float32(sampling.ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0])
 
 
@@ -425,7 +429,7 @@ class TransmissionSpec(FacetSpec):
     """A microfacet node that transmits light, in mode T or RT."""
 
     requires = spec.Ability.LOBE | spec.Ability.TRANSMISSION
-    # The roundings of a rotated frame change which refracted samples are totally reflected.
+    # In a rotated frame, roundings change which refracted samples are totally reflected.
     plain = ("frame", "shape")
 
     @property
@@ -443,7 +447,7 @@ class TransmissionSpec(FacetSpec):
         return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
-        """Share of light that leaves a denser medium of this index, mean over channels, (N,)."""
+        """Share of light that leaves a denser medium of IOR `index`, mean over channels, (N,)."""
 
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
@@ -475,20 +479,20 @@ TRANSMISSION_SPECS = tuple(
 
 # --- thin films -----------------------------------------------------------------------------------
 
-# tools/fits/thin_film.py measures the errors of a film's albedo for cosines of at least 0.1 and
-# films of up to 1000 nm. Shaders average the curve over visible facets, and for F_ss, by sums over
-# three cosines.
+# Error of a film's albedo for cosines of at least 0.1 and films of up to 1000 nm, measured by
+# tools/fits/thin_film.py. Shaders average a film's reflectance over visible facets, and over the
+# hemisphere for F_ss, by sums over three cosines each.
 FILM_SEEN = 7.82e-2
-FILM_OILED = 6.92e-2  # FILM_SEEN for film indices of at least 1.25
-FILM_PHASE = 71.0  # largest phase of a first order, in radian: 1000 nm of index 2.5
-CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 of a phase, times the curve's slope 9.5, and 16 of the curve
+FILM_OILED = 6.92e-2  # the same error for films with an IOR of at least 1.25
+FILM_PHASE = 71.0  # largest phase of the first order, in radians, at 1000 nm and an IOR of 2.5
+CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 in a phase, times the curve's slope 9.5, plus 16 in the curve
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
     Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
-# A metal with a lower index than the film's reflects totally; three cosines do not resolve fringes.
+# A metal with a lower IOR than the film reflects totally, and three cosines do not resolve fringes.
 FILM_TRAPPED = single(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
 # Pictures weight errors by the view's cosine.
@@ -497,7 +501,7 @@ FILM_SHOWN = sum_in(
     Term(2.59e-2, "FILM_ALBEDO's, times the cosine"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
-FILM_AVERAGE = 3.61e-2  # largest error of F_ss of a film in three cosines
+FILM_AVERAGE = 3.61e-2  # largest error of a film's F_ss that is a sum over three cosines
 
 
 def film_terms(alpha: float) -> tuple[Term, Term]:
@@ -513,7 +517,8 @@ def _mean(value: float, words: str) -> Tolerance:
     return single(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
-# UNSUMMED is largest for thin films on metals at grazing; the error of F_ss, for unequal indices.
+# UNSUMMED is largest for thin films on metals at grazing views. The error of F_ss is largest for
+# unequal IORs.
 UNSUMMED = Term(8e-4, "orders that are not summed")
 FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss in three cosines").terms, UNSUMMED)
 # fmt: off
@@ -532,7 +537,7 @@ FILM_ERRORS = {
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
         quantity=Quantity.REFLECTANCE_RMS, metric=tolerance.root_mean_square),
-    # Shaders compute F_ss by a sum if there is a film, even one without effect, otherwise by a fit.
+    # Shaders compute F_ss by a sum if there is a film, even a film without effect, else by a fit.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
     "film_energy": VALUE,
     "retroreflection": lobes.BURLEY_VALUE,
@@ -554,21 +559,22 @@ class Films(NamedTuple):
     thickness: tuple[float, float]  # nm
 
 
-# tools/fits/thin_film.py measures the mean errors of these sets of films.
-# Rough lobes under films with few fringes: masking decides which part of the curve is visible.
+# tools/fits/thin_film.py measures the mean errors of the sets of films below.
+# Rough lobes under films with few fringes. Masking decides which part of the curve is visible.
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
 FRINGED = STEEP._replace(thickness=(50.0, 1000.0))
-GLOSSY = STEEP._replace(alpha=(0.03, 0.1))  # visible facets are similar: few cosines are enough
-# Lobes with two alphas, whose albedos shaders fit by those of isotropic lobes.
+GLOSSY = STEEP._replace(alpha=(0.03, 0.1))  # visible facets are similar, so few cosines suffice
+# Lobes with two alphas. Shaders approximate the albedos by albedos of isotropic lobes.
 BRUSHED = Films(1 << 5, (0.05, 1.0), (0.1, 1.0), (50.0, 100.0))
-# Smooth lobes, which show the curve at one cosine. Few orders of interference matter.
+# Smooth lobes, whose values depend on the curve at one cosine. Few orders of interference matter.
 SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))
-# Smooth lobes at grazing under thin films. Many orders of interference matter.
+# Smooth lobes at grazing views under thin films. Many orders of interference matter.
 ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
-FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)  # slow averages
-LEAST_OIL = 1.2  # least index of films with a visible effect
-LEAST_FILM = 1.25  # least film index for albedos; below, metals may reflect totally
-LEAST_FACET = 0.1  # least cosine with the half vector; near grazing, all orders matter
+# Numbers of samples are small, because averages of films are slow.
+FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
+LEAST_OIL = 1.2  # smallest IOR of films with a visible effect
+LEAST_FILM = 1.25  # smallest IOR of films for albedos; below 1.25, metals may reflect totally
+LEAST_FACET = 0.1  # smallest cosine to the half vector; all orders matter at grazing angles
 THICK = (0.0, 1.0, 100.0, 1e4)  # film thicknesses at the edges of the domain, in nm
 
 
@@ -587,9 +593,9 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random inputs with dielectric indices of at least 1; if `edged`, some films match them.
+        """Random inputs with dielectrics of IOR 1 or more; if `edged`, some films have equal IORs.
 
-        Below 1, averages over few cosines do not resolve the curve at the critical angle.
+        For IORs below 1, averages over few cosines do not resolve the curve at the critical angle.
         """
         inputs = super().random_inputs(rng, count, edged)
         if "tint" in inputs:
@@ -600,7 +606,7 @@ class FilmSpec(FacetSpec):
         return inputs
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """Values of the row's function, which is defined for film indices of at least 1."""
+        """Values of a function that is defined for films with an IOR of at least 1."""
         index = np.maximum(batch.inputs["thinfilm_ior"], 1.0)
         return super().values(function, batch.altered(thinfilm_ior=index))
 
@@ -640,7 +646,7 @@ class FilmSpec(FacetSpec):
         )
 
     def edges(self, counts: Counts) -> Batch:
-        """Special pairs with extreme inputs, very thick films, and film indices of 0."""
+        """Special pairs with extreme inputs, very thick films, and films of IOR 0."""
         rng = generator()
         wo, wi = _some_special(rng, 2 * counts.pairs)
         inputs = self.random_inputs(rng, len(wo), edged=True)
@@ -669,7 +675,7 @@ def film_views(node: lobes.PbrSpec, films: Films) -> Batch:
 
 
 def _steep(batch: Batch) -> np.ndarray:
-    """Mask of pairs whose half vector is not grazing to the view."""
+    """Mask of pairs whose view is not nearly perpendicular to the half vector."""
     half = batch.wo + batch.wi
     length = np.linalg.norm(half, axis=1)
     cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)

@@ -27,7 +27,7 @@ ZELTNER_VALUE = sum_of(
 )
 CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
 ZELTNER_ALBEDO = ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
-LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings over twice the least roughness
+LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings divided by twice the least roughness
 
 
 def conty_kulla_value(logarithm: float) -> Tolerance:
@@ -46,11 +46,12 @@ CONTY_KULLA_ALBEDO = sum_in(Quantity.ALBEDO, *FIT, exact=True)
 def power_error(host: Host) -> float:
     """Error of Conty and Kulla's sheen due to the engine's pow(), minus the roundings of LOGARITHM.
 
-    With n = 1 / roughness, pi f cos is at most (2 + n) / 8 sin^n. Errors are relative above 1.
+    With n = 1 / roughness, pi f cos is at most (2 + n) / 8 sin^n. Errors of values above 1 are
+    relative errors.
     """
     rng = samples.generator()
     exponent = samples.LEAST_SHEEN ** -rng.random(spec.ARGUMENTS)
-    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # uniform powers
+    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # a uniform power
     exponent = samples.float32(exponent)
     factor = (2.0 + exponent) / 8.0
     scale = np.maximum(1.0, factor * sine**exponent)

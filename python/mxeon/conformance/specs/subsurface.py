@@ -19,14 +19,14 @@ LEAST_COSINE = 1e-6  # MaterialX's M_FLOAT_EPS
 COSINES = np.linspace(-1.0, 1.0, 129)
 SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # scenes of a unit sphere
 LEAST_HEIGHT = 0.3  # least z of normals, which excludes pixels near the rim
-# Materials in which light spreads over the sphere, or hardly spreads.
+# Materials in which light spreads over the sphere, and materials in which light hardly spreads.
 MATERIALS: tuple[Values, ...] = (
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},
     {"color": (0.4, 0.7, 1.0), "radius": (0.02, 0.1, 1.0), "anisotropy": 0.5},
     *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
 
-# The largest error is 9.3e-3 and on the light's axis.
+# The largest error of six circles is 9.3e-3, at points on the axis of the light.
 RINGS = tolerance.single(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 MEAN_OF_CIRCLES = "twice the mean over a sphere of the errors of six circles"
 RINGS_MEAN = tolerance.single(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surface shaders with all their lobes, compared with the layer equation."""
+"""Specs of surface shaders, which are compared with the layer equation of all lobes."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale"
 
 
 def ports_by_range(**names: str) -> tuple[Input, ...]:
-    """Inputs with the ranges of RANGES; each argument is a key and names separated by spaces."""
+    """Inputs with ranges of RANGES; an argument `key="name1 name2"` gives two inputs one range."""
     rows = ((key, name) for key, words in names.items() for name in words.split())
     return tuple(replace(RANGES[key], name=name) for key, name in rows)
 
@@ -53,22 +53,24 @@ def _ones(names: str) -> Values:
 
 
 LIGHT_ALPHA = 0.3  # alpha of the GGX lobe that draws half of the light directions
-# tools/fits/surface_shaders.py measures the errors due to the shaders' fits of all lobes: the
-# largest over 32 sets of a check's size, compared with the layer equation in float64. The result is
-# a third of the sum of every lobe's largest error, because no material reaches all of these.
+# tools/fits/surface_shaders.py measures the errors that the fits of all lobes cause in a shader. An
+# error is the largest deviation from the layer equation in float64, over 32 sets of a check's size.
+# The error is a third of the sum of the largest errors of all lobes, because no material has the
+# largest errors of all lobes at once.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 FITS = Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views")
 ALBEDO = sum_in(Quantity.ALBEDO, FITS, sum_over(1024))
 STRETCHED_FIT = 0.019  # largest error of an anisotropic lobe's value due to fits
-# Environment sums for different views have independent errors.
+# Environment sums for different views have independent errors, so the mean over 64 views has an
+# eighth of the error.
 MEAN = sum_of(
     Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
     Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
-# A reflecting lobe over a transmitting lobe passes (1 - E)^2 of the light, whose derivative by E is
-# at most 2 in magnitude.
+# A reflecting lobe of albedo E over a transmitting lobe passes (1 - E)^2 of the light. The
+# derivative of this share by E is at most 2 in magnitude.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
@@ -89,7 +91,7 @@ ERRORS = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfaceShaderSpec(spec.LobeSpec):
-    """A surface shader with contributions from all of its lobes."""
+    """A surface shader to whose values all lobes contribute."""
 
     requires = spec.Ability.MATERIAL
     plain = ("frame", "shape", "lobes", "inputs from an image")
@@ -100,13 +102,13 @@ class SurfaceShaderSpec(spec.LobeSpec):
     without_effect: tuple[str, ...]
     white: Values  # inputs of a material that is lossless by the layer equation
     glass: Values  # inputs of clear glass
-    finish: tuple[str, ...]  # inputs of glass that may vary: roughness and index
-    # For each input that has no effect by itself, the values of other inputs that give it one.
+    finish: tuple[str, ...]  # inputs of glass that may vary: roughness and IOR
+    # For each input without an effect by itself, values of other inputs that enable the input.
     needs: Mapping[str, Values] = field(default_factory=dict)
     errors: Mapping[str, Tolerance] = field(default_factory=lambda: ERRORS)
     counts: Counts = COUNTS
-    # Inputs that are not varied: an opacity blends the whole surface with the background, and
-    # every evaluation sets the occlusion itself.
+    # Inputs that are not varied, because an opacity blends the whole surface with the background,
+    # and because every evaluation sets the occlusion.
     fixed_inputs: tuple[str, ...] = ()
     library: str = "eonlib"  # library whose definition of the node the reference evaluates
 
@@ -175,7 +177,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return self._reference(batch, "environment")
 
     def transmitted(self, batch: Batch, opacity: bool) -> Array:
-        """Light of a uniform environment that passes by refraction or, if `opacity`, directly."""
+        """Light of a uniform environment that passes by refraction or, if `opacity`, by opacity."""
         return self._reference(batch, "opacity" if opacity else "transmission")
 
     def clear(self, batch: Batch) -> Batch:
@@ -196,7 +198,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return Reference().evaluate(self._shader, batch.wo, batch.wi, batch.inputs, branch)
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random values of the judged inputs; if `edged`, of all varied inputs, often extreme."""
+        """Random values of the judged inputs or, if `edged`, often extreme values of all inputs."""
         return draw(rng, count, self.varied if edged else self.judged, edged)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
@@ -232,7 +234,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         """Views of materials in which all lobes contribute, with extreme inputs."""
         rng, count = generator(), counts.materials
         wo, inputs = _views(rng, count), self.random_inputs(rng, count, edged=True)
-        # The model QON itself gains up to 1.4 % of light at grazing views.
+        # Set the diffuse roughness to 0, because QON gains up to 1.4 % of light at grazing views.
         inputs |= {name: 0.0 * inputs[name] for name in inputs if name == "diffuse_roughness"}
         return _isotropic(Batch(wo, wo, inputs))
 
@@ -306,7 +308,7 @@ SURFACE_SHADERS = (
             "transmission_scatter", "transmission_scatter_anisotropy", "transmission_dispersion_scale",
             "transmission_dispersion_abbe_number", "subsurface_scatter_anisotropy"),
         needs={
-            # The default colors of subsurface and base are equal.
+            # Change a color, because the default colors of subsurface and base are equal.
             "subsurface_weight": {"subsurface_color": CHANGED_COLOR},
             "emission_color": {"emission_luminance": 1000.0}},
         fixed_inputs=("geometry_opacity",),

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences from the specifications of four surface shaders, each with a material to test it.
+"""Sentences from the specifications of four surface shaders, with materials to test each sentence.
 
-Each row fixes some inputs, draws others at random, and compares the shader with the specification's
-model in `mxeon.models.surfaces`. `permitted` lists alternative formulas that the specification
-permits; `wrong` lists alternative formulas that are errors, for diagnoses.
+Each row fixes some inputs, draws other inputs at random, and compares the shader with a model of the
+specification in `mxeon.models.surfaces`. `permitted` lists alternative formulas that the
+specification permits; `wrong` lists erroneous formulas that a diagnosis can recognize.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # names of a model's alternative formulas
 PAIRS = 24  # number of direction pairs; an expected albedo takes a millisecond
-GRAZING = 0.05  # smallest cosine of the directions; SLANTED replaces directions below
+GRAZING = 0.05  # smallest cosine of the directions; SLANTED replaces more grazing directions
 SLANTED = samples.float32([0.6, 0.0, 0.8])
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)
@@ -107,7 +107,7 @@ class Text:
     ) -> SentenceSpec:
         """The spec of a sentence, whose tolerance includes `terms`.
 
-        The random inputs are `inputs` and those that `ranges` names; see `ports_by_range`.
+        The random inputs are `inputs` and the inputs that `ranges` names; see `ports_by_range`.
         """
         return SentenceSpec(
             title=f"{self.name}, {key}",
@@ -130,7 +130,7 @@ def _forms(names: str | Forms) -> Forms:
 
 TWICE, TINTED = "reflection taken twice", "tinted light below the {}"
 FAR = 1e6  # transmission depth at which a medium absorbs nearly no light
-# The logarithm of the color must be finite.
+# The logarithm of the color must be finite, so the color is at least 0.05.
 THROUGH_COLOR = Input("transmission_color", "color3", low=0.05)
 WEIGHT = Input("specular_weight", high=2.0)
 OPENPBR = Text("OpenPBR Surface", "open_pbr_surface", open_pbr)

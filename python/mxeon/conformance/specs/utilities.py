@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Specs of utility nodes, which compute inputs of lobes.
 
-These are pbrlib's utility nodes, and eonlib's nodes that compute the color for a given EON albedo.
+The nodes are pbrlib's utility nodes, and eonlib's nodes that compute the color for an EON albedo.
 """
 
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ from mxeon.models.nodes.node import Variant
 from mxeon.shaders import nodes
 from mxeon.shaders.nodes import INVERSIONS, Node, connection_text, document_text, node_text
 
-NAME, COLOR = "value", "color"  # names of the utility node, and of its conversion to a color
+NAME, COLOR = "value", "color"  # names of the utility node, and of a node that converts to color
 TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # input types by array shape
 SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # special values of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
@@ -44,8 +44,8 @@ INPUTS = {
 }
 # fmt: on
 
-# The aspect divides the rounding of 0.98 by 2 (1 - 0.98). Errors are absolute, because the least
-# alpha is 1e-8.
+# The aspect ratio is a square root of 1 minus a number of at most 0.98, so a rounding of the number
+# is divided by 2 (1 - 0.98). Errors are absolute, because the least alpha is 1e-8.
 ALPHA = sum_in(
     Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
 )
@@ -79,7 +79,7 @@ LEAST_LOGARITHM = 1e-4  # smallest argument at which a logarithm is measured
 
 
 def _shares() -> Array:
-    """Random float32 numbers in [0, 1]; the last one is 1."""
+    """Random float32 numbers in [0, 1]; the last number is 1."""
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
@@ -88,7 +88,7 @@ _power_error = spec.POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWE
 _logarithm_error = spec.LOGARITHM.error(
     lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
 )
-# Errors of an engine's function, by node, times the slope of the output by that function.
+# For each node, the error of an engine's function times the output's derivative by the function.
 # fmt: off
 ENGINE = {
     "chiang_hair_roughness": EngineError("the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5),
@@ -111,7 +111,7 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        # Each roughness depends only on its lobe's scale, such as `roughness_TT` on `scale_TT`.
+        # A roughness depends only on the scale of the same lobe: `roughness_TT` on `scale_TT`.
         suffix = self.output.removeprefix("roughness")
         names = self.row.inputs
         return tuple(x for x in names if not x.startswith("scale_") or x.endswith(suffix))
@@ -147,11 +147,11 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
         return color
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Scale indices of a metal so that roundings have a uniform effect; keep other outputs.
+        """Scale a metal's IOR n + ik so that roundings have a uniform effect; keep other outputs.
 
         n becomes n (1 - sqrt(r))^2, because n is a quotient by 1 - sqrt(r). k becomes
         k^2 (1 - r) / (n_max + 1)^2, because k^2 is a difference of terms as large as (n_max + 1)^2,
-        over 1 - r.
+        divided by 1 - r.
         """
         if self.node != "artistic_ior":
             return compared
@@ -164,14 +164,14 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
-    """A batch of these inputs; the directions have no effect."""
+    """A batch with the given inputs; the directions have no effect."""
     count = len(next(iter(inputs.values())))
     up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
     return Batch(up, up, inputs)
 
 
 def _inversion(node: str) -> utilities.UtilityNode:
-    """A row of one of eonlib's nodes; its variants are the other nodes and the unchanged color."""
+    """A row for a node of eonlib; the variants are the other nodes and the unchanged color."""
 
     def output(name: str) -> utilities.Outputs:
         function = getattr(diffuse, name)
