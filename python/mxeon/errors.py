@@ -39,10 +39,7 @@ class MxeonError(Exception):
 
 
 class InputError(MxeonError, ValueError):
-    """An argument, name or file that cannot be used.
-
-    The message states the argument or file, the rule, and the wrong value.
-    """
+    """An argument, name or file that cannot be used. The message states the rule and the value."""
 
 
 class DocumentError(InputError):
@@ -134,10 +131,7 @@ class Implied(NotRun):
 
 
 class OutsideModel(NotRun):
-    """A value outside the range of a model.
-
-    `input` is the path of the input in the document.
-    """
+    """A value outside the range of a model. `input` is the path of the input in the document."""
 
     def __init__(self, message: str, input: str = "") -> None:
         super().__init__(message)
@@ -162,10 +156,7 @@ def assert_known(rule: str, name: object, known: Iterable[str], listing: str = "
 
 
 def printable(text: str) -> str:
-    """The text without characters that control a terminal or GitHub's runner.
-
-    U+FFFD replaces these characters, and surrogates.
-    """
+    """Text in which U+FFFD replaces surrogates and characters that control terminals or GitHub."""
     return COMMAND.sub("\ufffd", STEERING.sub("\ufffd", text))
 
 

@@ -108,9 +108,7 @@ def read_merl(path: AnyPath, step: int = 6) -> MeasuredBrdf:
 
 
 def merl_directions(theta_h: Array, theta_d: Array, phi_d: Array) -> tuple[Array, Array]:
-    """Directions wo, wi from half and difference angles in radians.
-
-    The half vector has azimuth 0.
+    """Directions wo, wi from half and difference angles in radians, for a half vector of azimuth 0.
 
     >>> wo, wi = merl_directions(*np.array([[0.0], [0.5 * np.pi / 3.0], [0.0]]))
     >>> wo.round(6), wi.round(6)
@@ -129,10 +127,7 @@ LEAST_ALPHA = 0.02  # measurements cannot resolve narrower lobes
 
 @dataclass(frozen=True)
 class FitModel:
-    """A model to fit, `value(wo, wi, color, *scalars)`, with values of shape (N, C).
-
-    `mxeon.model` describes the inputs.
-    """
+    """A model to fit: `value(wo, wi, color, *scalars)`, (N, C), with inputs as in `mxeon.model`."""
 
     value: Callable[..., Array]
     scalars: Mapping[str, tuple[float, ...]]  # minimum, maximum, and starting values of the search

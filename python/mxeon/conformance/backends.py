@@ -121,15 +121,11 @@ class Backend(ABC):
 
     @property
     def claims(self) -> tuple[str, str]:
-        """The values of `Result.claimed` and `Result.model`, "" except for a renderer's own node."""
+        """Values of `Result.claimed` and `Result.model`, "" except for a renderer's own node."""
         return "", ""
 
     def judged(self) -> Spec:
-        """The spec to judge.
-
-        Subclasses add a renderer's variants of the model, or choose the form of the model that is
-        nearest to the measured values.
-        """
+        """The spec to judge, which subclasses may adapt to a renderer or to the measured values."""
         return self.spec
 
     def take(self, draw: Callable[[Counts], T]) -> T:
@@ -842,10 +838,7 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Tolerances of pictures.
-
-        Albedos of pbrlib nodes are not judged, because Storm samples other directions.
-        """
+        """Tolerances without albedos of pbrlib nodes, because Storm samples other directions."""
         errors = super().errors(spec)
         return {**errors, "albedo": None} if Ability.LOBE in spec.requires else errors
 

@@ -183,10 +183,7 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 
 
 def frames(case: Case) -> Iterator[Compared]:
-    """Values in rotated and unrotated frames, which must agree.
-
-    Half of the normals face away from the viewer.
-    """
+    """Values in rotated and unrotated frames, which must agree. Half of the normals face away."""
     turned = case.backend.turned
     # A sum over the environment is slow. Every fifth pair still covers both sides of the surface.
     subset = turned.where(slice(None, None, 5))

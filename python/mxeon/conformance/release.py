@@ -101,10 +101,7 @@ def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
 def definition_facts(
     definition: mx.NodeDef, reference: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """The compared attributes of a node definition, by description.
-
-    Only ports of the definition `reference` are included.
-    """
+    """The compared attributes of a node definition, for all ports of the definition `reference`."""
     name = reference.getName()
     facts = {
         f"category of {name}": definition.getNodeString(),
@@ -124,10 +121,7 @@ def definition_facts(
 
 
 def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
-    """The attributes of units and geometric properties in a document, by description.
-
-    Only units and properties of the release are included.
-    """
+    """The attributes of a document's units and geometric properties that the release defines."""
     names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
     definitions = [own for own in map(document.getChild, names) if own]
     return {

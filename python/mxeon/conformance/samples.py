@@ -49,10 +49,7 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """The counts for seed 1, or up to 1/8 fewer for other seeds.
-
-        The variation prevents shaders from recognizing a check by the number of samples.
-        """
+        """These counts for seed 1, else up to 1/8 fewer, so that shaders cannot expect a count."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -116,10 +113,7 @@ class Batch:
 
     @property
     def rough(self) -> Array:
-        """The roughness of each pair, (N,), or 0 for nodes without roughness.
-
-        The larger of two alphas is the roughness.
-        """
+        """The roughness of each pair, (N,): the larger of two alphas, or 0 if there is none."""
         roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
         if roughness.shape[-1:] == (2,):
             roughness = roughness.max(axis=-1)
@@ -141,10 +135,7 @@ def generator() -> Rng:
 
 
 def directions(rng: Rng, count: int) -> Array:
-    """Random directions, of which a quarter has log-uniform cosines down to 1e-6.
-
-    The cosines of the other directions are uniform in [0, 1].
-    """
+    """Random directions with uniform cosines, of which a quarter is log-uniform down to 1e-6."""
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
     rng.shuffle(mu)

@@ -179,10 +179,7 @@ def random_columns() -> Columns:
 
 
 def _unit(rng: np.random.Generator) -> Array:
-    """Random multiples of 2^-24 in [0, 1), as in shaders.
-
-    The first CORNERS are the smallest or the largest of these numbers.
-    """
+    """Random multiples of 2^-24 in [0, 1). The first CORNERS are the smallest or the largest."""
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24

@@ -51,10 +51,7 @@ CLAIMS = {
 
 
 def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[Result, ...]:
-    """Results of all checks of texts for a library.
-
-    Checks of generated shaders cover the given rough diffuse nodes and simple lobes.
-    """
+    """Results of all checks of texts for a library, including texts of the nodes `subjects`."""
     subjects = tuple(subjects)
     results = [
         _judged("closure", f"{each.title}, mdl", library, partial(_closure_faults, each, library))
@@ -156,10 +153,7 @@ CALLEE = re.compile(r"(?:\w+::)*\w+(?=\()")
 
 
 def _lobe_expression(subject: lobes.ScatteringSpec, target: str, library: str) -> str:
-    """The expression of a node in a generated shader.
-
-    The variable of an input in the expression is `lobe_`, followed by the input's name.
-    """
+    """The expression of a node in a generated shader. Input variables begin with `lobe_`."""
     frame = {"normal": (0.0, 0.6, 0.8), "tangent": (1.0, 0.0, 0.0)}
     document = subject.document({name: frame[name] for name in frame if name in subject.names})
     with warnings.catch_warnings():

@@ -537,9 +537,7 @@ ROUNDED = "with another driver, few samples leave the tolerance"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:
-    """A change of a number between two runs, in words.
-
-    `place` is the region of the counted samples.
+    """A change of a number between two runs, in words, with the region `place` of the samples.
 
     >>> growth("wrong", 0.125, 0.25, Region("roughness", "value", low=0.5))
     '12.5 % -> 25 % of the samples are wrong with roughness 0.5 or above'

@@ -152,8 +152,8 @@ def run(
 
     The iterator yields the same pairs as `mxeon.jobs.pool.run`. An item that takes `timeout`
     seconds ends its worker process, and Dask's nanny starts a new process. If `work` raises
-    `unavailable`, another worker processes the item. Raises NotRun if the cluster has no compatible worker for too
-    long, or if the connection to the scheduler is lost.
+    `unavailable`, another worker processes the item. Raises NotRun if the cluster has no compatible
+    worker for too long, or if the connection to the scheduler is lost.
     """
     from distributed import wait
 

@@ -58,10 +58,7 @@ def safe_path() -> Iterator[None]:
 
 
 def forget_working_folder() -> None:
-    """Remove the working folder from the import path, unless mxeon is imported from this folder.
-
-    `python -m` adds the working folder to the path.
-    """
+    """Remove the working folder, which `python -m` adds, from the path, unless mxeon is there."""
     with suppress(FileNotFoundError):  # the working folder may have been deleted
         if not sys.flags.safe_path and sys.path[0] == os.getcwd() != HOME:
             del sys.path[0]

@@ -166,7 +166,7 @@ class Diagnosis(BriefRepr):
     """The explanation of a failure.
 
     - `causes`: The known causes. The first cause explains the most.
-    - `distances`: Root-mean-square distances of the values to all known models and defects, by title.
+    - `distances`: Root-mean-square distances of values to all known models and defects, by title.
     - `permitted`: Whether a function that the specification permits reproduces all values.
     """
 
@@ -461,10 +461,7 @@ class Run(Scope):
 
     @property
     def exit_status(self) -> int:
-        """The exit status of `mxeon check`.
-
-        The status is 0 for passed, 1 for failed, 2 for a refused document, and 3 for not run.
-        """
+        """Exit status of `mxeon check`: passed 0, failed 1, a document was refused 2, not run 3."""
         return errors.MISUSE if self.refused else STATUSES[self.verdict]
 
     def raise_for_failure(self) -> None:
@@ -534,10 +531,7 @@ class Run(Scope):
 
 
 def _words() -> ModuleType:
-    """The module that makes sentences from results.
-
-    The import is late because `words` imports this module.
-    """
+    """The module that makes sentences, imported late because `words` imports this module."""
     from mxeon.conformance import words
 
     return words

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known defects, which are described in docs/upstream, and the results that show the defects.
-
-Each page in docs/upstream begins with the data of a defect.
-"""
+"""Known defects from the pages of docs/upstream, and the results that show these defects."""
 
 import json
 import math
@@ -166,10 +163,7 @@ def issues_of(result: Result) -> tuple[Issue, ...]:
 
 
 def blamed(result: Result) -> list[set[str]]:
-    """The lobes that make a combination of lobes fail, in one set per page or cause.
-
-    Results of a single lobe have no sets.
-    """
+    """Lobes that make a combination fail, in one set per page or cause; [] for a single lobe."""
     if _is_lobe(result.subject):
         return []
     if found := issues_of(result):

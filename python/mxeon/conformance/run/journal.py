@@ -87,10 +87,7 @@ class Journal:
             raise
 
     def _clear(self) -> None:
-        """Move the results of an earlier run to PREVIOUS.
-
-        If the run is resumed, delete the files that `report make` creates again.
-        """
+        """Move earlier results to PREVIOUS. If the run is resumed, only delete its reports."""
         names = [name for name in REPORTS if (self._folder / name).is_file()]
         if self._path.exists() and self._resume:
             for name in names:

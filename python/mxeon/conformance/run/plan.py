@@ -157,10 +157,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Plan(Scope):
-    """The tasks of a run, and all data that the findings depend on.
-
-    Runs with equal plans have equal findings.
-    """
+    """All tasks of a run and all data that findings depend on. Equal plans have equal findings."""
 
     tasks: tuple[Task, ...]
     # Values of the command's options for policy, seed and methods, by option.
