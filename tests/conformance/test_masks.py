@@ -55,7 +55,7 @@ NESTED = {
 
 
 def furnace(gl, monkeypatch, library, folded, opaque, nodes):
-    """Reflected light in a white environment; if `folded`, weights include the mix weights."""
+    """Light reflected in a white environment; if `folded`, lobe weights include mix weights."""
     context_of = generation.context_of
 
     def context(*arguments):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the cases of families and prints figures; the exit status is 1 if there was a fault.
+"""Runs the fuzzer's cases by family and prints figures. The exit status is 1 if a case had a fault.
 
 python -m tests.fuzz [FAMILY ...] [--cases N]
 """

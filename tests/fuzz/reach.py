@@ -49,7 +49,7 @@ class Place:
 
 
 def documents():
-    """Roots of two documents with every kind of element; one has materials, one only outputs."""
+    """Roots of two documents with every kind of element. The second document has no materials."""
     whole, outputs = (ElementTree.parse(EVERY).getroot() for _ in range(2))
     for kind in ("surfacematerial", "surface", "backdrop", "look", "lookgroup"):
         outputs.remove(outputs.find(kind))
@@ -67,7 +67,7 @@ def furnish(folder):
 
 @cache
 def attributes(root):
-    """Attribute names in a document, MaterialX's Python module and libraries, and the fuzzer."""
+    """Attribute names that occur in a document, in MaterialX, or in the fuzzer."""
     kinds = [kind for kind in vars(mx).values() if isinstance(kind, type)]
     constants = {
         (each, name) for each in kinds for name in dir(each) if name.endswith("_ATTRIBUTE")

@@ -50,7 +50,7 @@ def emit(statement):
 
 
 def lit(scene):
-    """Mask of pixels away from the rim and the terminator, and mask of pixels with s < 0."""
+    """Masks of pixels: away from the rim and terminator, and with dot(wo, wi) < mu_o mu_i."""
     points = sphere(scene.size)
     light = np.asarray(scene.light)
     mu_o, mu_i = points.normal[..., 2], points.normal @ light

@@ -57,7 +57,7 @@ def remembered():
 
 @cache
 def means(model, name):
-    """Mean values of a model over each pixel of a view that is judged."""
+    """Mean values of a model over each judged pixel of a view."""
     return pixel_means(reference.diffuse_model(model), VIEWS[name])
 
 

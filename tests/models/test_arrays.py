@@ -47,10 +47,11 @@ GRADIENT = 1e-7  # error of finite differences, divided by the larger of 1 and t
 WIDTH = 1e-4  # step of the finite differences
 # Multiples of WIDTH: three single steps and three double steps on each side.
 OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)
-RELIABLE = 2e-8  # a derivative is reliable if two step widths differ by at most this much
+RELIABLE = 2e-8  # largest difference between the two step widths, for a reliable derivative
 COMPARED = 0.6  # minimum fraction of partial derivatives that must be compared
-# Two functions have smaller fractions. The curve of a film is clamped at thousands of nodes, which
-# causes kinks, and the root in `diffusion_blur` amplifies the rounding of differences.
+# Two functions have smaller minimum fractions of compared derivatives. The curve of a film is
+# clamped at thousands of nodes, which causes kinks, and the root in `diffusion_blur` amplifies the
+# rounding of differences.
 CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0}
 NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference that is rounded to 2^-53
 VALUE = 1e-12  # difference between libraries, divided by the larger of 1 and the value
@@ -314,7 +315,7 @@ def test_gradients_of_the_compensation_are_those_of_differences(name):
 
 @lru_cache(maxsize=4)  # PyTorch and JAX use the same reference
 def reference(name, compensate):
-    """Arguments, NumPy's values, and finite differences by array and component of a function."""
+    """Arguments of a function, NumPy's values, and finite differences by array and component."""
     function = PORTABLE[name]
     arrays, switches = sampled(function)
     switches |= {"compensate": True} if compensate else {}

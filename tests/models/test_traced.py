@@ -64,7 +64,10 @@ def inside(row):
 
 
 def at_ends(row, function):
-    """Calls with all inputs at an end of their ranges, and with one input if rows may differ."""
+    """Calls with all inputs at an end of their ranges.
+
+    If inputs may differ between rows, the call also contains cases with one input at an end.
+    """
     middle, ends = inside(row), {}
     for each in row.parameters:
         low, high, _ = RANGES[each.quantity]

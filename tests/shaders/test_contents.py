@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes that a run finds in documents: in nodegraphs, inside surface shaders, and by mode."""
+"""Nodes, with their modes, that a run finds in documents, nodegraphs and surface shaders."""
 
 import pytest
 

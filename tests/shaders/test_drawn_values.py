@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents that mxeon makes to render values leave MaterialX's shared data library unchanged."""
+"""Documents that mxeon creates to render values do not change MaterialX's shared data library."""
 
 import MaterialX as mx
 import pytest

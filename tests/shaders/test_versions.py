@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""mxeon accepts a version of MaterialX by its functions, not by a list of versions."""
+"""mxeon accepts every version of MaterialX that has the required functions, without a list."""
 
 import MaterialX as mx
 import pytest
