@@ -307,7 +307,7 @@ WRONG, ELSEWHERE, RIGHT = range(3)
 
 
 def _rank(run: Run, result: Result) -> int:
-    """Rank of a node: wrong in a document, wrong only for inputs of no document, or right."""
+    """Rank of a node: wrong in a document, wrong for inputs that no document uses, or right."""
     if result.verdict != FAILED:
         return RIGHT
     if run.is_elsewhere(result):

@@ -34,7 +34,7 @@ Run = Callable[[argparse.Namespace], int]
 
 
 class _Format(argparse.RawDescriptionHelpFormatter):
-    """Help formatter that does not break names at hyphens, such as cycles-native."""
+    """Help formatter that does not break names such as cycles-native at hyphens."""
 
     def _split_lines(self, text: str, width: int) -> list[str]:
         return textwrap.wrap(text, width, break_on_hyphens=False)
@@ -206,7 +206,7 @@ def inputs(
 
 
 def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defaults: int) -> None:
-    """Add the options of `mxeon.shaders.document.policy`; --allowCode only if `runs_code`."""
+    """Add the options of `mxeon.shaders.document.policy`, but --allowCode only if `runs_code`."""
     command.add_argument(
         "--path",
         action="append",

@@ -158,10 +158,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _baseline(options: argparse.Namespace) -> Report:
-    """Read the accepted run before --report moves earlier results away.
-
-    If the accepted run is invalid, the earlier results are moved before the error is raised.
-    """
+    """Read the accepted run, valid or not, before --report moves earlier results away."""
     from mxeon.conformance.run.journal import Journal
     from mxeon.report.diff import read_results
 

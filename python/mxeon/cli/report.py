@@ -79,7 +79,7 @@ def run_schema(options: argparse.Namespace) -> int:
 
 
 def run_diff(options: argparse.Namespace) -> int:
-    """Print how two reports differ; return FAILED if a check got worse, NOT_RUN if one is lost."""
+    """Print two reports' differences; return FAILED for a worse check, NOT_RUN for a lost check."""
     from mxeon.report.diff import compare, lines, read_results, status, to_json
 
     changes = compare(read_results(options.before), read_results(options.after))

@@ -68,7 +68,7 @@ def page(data: PageData) -> str:
 
 
 def _with_texts(fields: dict[str, Any]) -> dict[str, Any]:
-    """Store each paragraph, reference and image once. `explorer/src/texts.ts` restores all uses."""
+    """Store each paragraph, reference and image once. `explorer/src/texts.ts` restores fields."""
     places: dict[str, int] = {}
     references: list[object] = []
     images: dict[tuple[int, int, str], int] = {}

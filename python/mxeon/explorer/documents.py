@@ -36,7 +36,7 @@ LAYOUT = ("comment", "newline")
 # Maximum number of a document's materials that are judged, because judging a material takes 2 s.
 REFERENCES = 20
 LARGEST_IMAGE = 256  # maximum texels on a side; such an image has a quarter of a mebibyte
-ALL_IMAGES = 64 * LARGEST_IMAGE**2  # maximum texels of a document; these add 22 MB to a page
+ALL_IMAGES = 64 * LARGEST_IMAGE**2  # maximum texels of a document, which add 22 MB to a page
 RANGE = (("uimin", "uisoftmin"), ("uimax", "uisoftmax"))
 
 # Intended models of the diffuse nodes, with the input energy_compensation on and off.
@@ -48,7 +48,7 @@ def document_sources(
 ) -> tuple[data.ShaderSource, ...]:
     """Sources of a document's materials, with eonlib and, if possible, with `library`.
 
-    Raises DocumentError if no shader can be generated with eonlib, ImageError for a bad image.
+    Raises DocumentError if no shader can be generated with eonlib, or ImageError for a bad image.
     """
     name = " ".join(printable(Path(file).name).split())
     sources: list[data.ShaderSource] = []
@@ -226,7 +226,7 @@ def _by_effect(
         words = name.split("_")
         stems = ["_".join(words[:count]) for count in range(1, len(words))]
         gates = {"weight", *stems, *(f"{stem}_weight" for stem in stems)} - {name}
-        unused = name == "default" and f"{node}/file" in values  # color for a missing image
+        unused = name == "default" and f"{node}/file" in values  # color used for a missing image
         if unused or any(values.get(f"{node}/{gate}") == 0.0 for gate in gates):
             return 2
         return 0 if document.getDescendant(port.path) else 1

@@ -28,7 +28,7 @@ from mxeon.shaders.scene import direction
 DIGITS = 7
 POLES = (8.0, 35.0, 60.0, 80.0)  # angles of both directions from the normal, in degrees
 # Differences in azimuth between the two directions, in degrees. The mirror direction, 180, is left
-# out, because smooth lobes are not finite there.
+# out, because smooth lobes have no finite value in the mirror direction.
 AZIMUTHS = (0.0, 100.0, 176.0)
 VIEWS = (0.05, 0.2, 0.4, 0.6, 0.8, 0.98)  # cosines of the angles of view in a white environment
 LOBES = ("BSDF", "VDF", "surfaceshader")

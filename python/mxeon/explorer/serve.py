@@ -31,10 +31,7 @@ class Server(ThreadingHTTPServer):
         self.host = f"127.0.0.1:{self.server_port}"
 
     def receive(self, path: PurePosixPath, content: bytes) -> None:
-        """Store a file sent to "/files/..." or "/light/...", and make a page that shows the file.
-
-        Raise MxeonError if the file is invalid.
-        """
+        """Store and show a file that was sent to /files/... or /light/..., or raise MxeonError."""
         _, kind, *parts = path.parts
         target = self.folder.joinpath(kind, *parts)
         target.parent.mkdir(parents=True, exist_ok=True)

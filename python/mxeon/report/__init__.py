@@ -48,7 +48,7 @@ def to_json(run: Run) -> str:
     - format: Version of this layout, which increases when a key changes or is removed.
     - verdict: "passed", "failed" or "not run". The verdict of a check may also be "differs", for a
       difference that the specification permits. `counts` has the number of checks by verdict.
-    - passed: Whether everything requested ran and nothing failed. `exit_status` is the command's.
+    - passed: Whether everything requested ran and nothing failed. `exit_status` is the command's status.
     - sentence: The verdict as a sentence. `seconds` is the duration of the run, or null.
     - missing: Items that an interrupted run has not finished.
     - refused: Refused documents. `errors` has the faults of these documents.
@@ -121,10 +121,7 @@ def _picture_fields(run: Run) -> list[dict[str, Any]]:
 
 
 def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
-    """File names without suffix for pictures.
-
-    The names are in ASCII, and are distinct even if case is ignored.
-    """
+    """ASCII file names for pictures, without suffix, which differ even if case is ignored."""
     names, uses = [], Counter[str]()
     for picture in pictures:
         document = Path(picture.document).stem
@@ -216,7 +213,7 @@ def html(run: Run) -> Generator[str, None, None]:
 
 
 def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    """The pictures, followed by each reference of a picture that is not yet among the pictures."""
+    """The given pictures, followed by each picture's reference unless it is already included."""
     known = {_subject(each) for each in pictures if each.host == REFERENCE}
     added = []
     for picture in pictures:
@@ -230,11 +227,7 @@ def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
 
 
 def _subject(picture: Picture) -> tuple[str, ...]:
-    """Key that a picture has in common with its reference.
-
-    The key includes the rendered points, because hosts render portraits of nodes at different
-    points.
-    """
+    """Key that a picture and its reference share. Portraits must also agree on rendered points."""
     points = picture.metadata.get("points", "")
     return picture.document, picture.element, picture.library, picture.scene, points
 

@@ -253,7 +253,7 @@ def to_json(changes: Iterable[Change]) -> list[dict[str, object]]:
 
 
 def annotations(changes: Iterable[Change]) -> Iterator[str]:
-    """A GitHub annotation for each subject with regressions or lost checks; GitHub shows few."""
+    """One annotation per subject with worse or lost checks, since GitHub shows few annotations."""
     for (kind, *_, subject), rows in grouped(changes, _group).items():
         if level := {WORSE: "error", LOST: "warning"}.get(kind):
             title = ", ".join(filter(None, (kind, rows[0].location, subject)))

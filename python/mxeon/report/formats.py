@@ -65,7 +65,7 @@ def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, f
 
 
 def linked(result: Result) -> Markup:
-    """Explanation of a result as HTML: an uncaught control, the diagnosis, and known issues."""
+    """Explanation of a result as HTML: a missed negative control, diagnosis, and known issues."""
     excess = words.excess(result) if result.within and result.verdict != PASSED else ""
     links = [Markup("see ") + each for each in _links(result)]
     return Markup("; ").join(
@@ -100,7 +100,7 @@ def link(issue: Issue) -> str:
 
 @cache
 def _site() -> str:
-    """Address of the documentation by the package's metadata (`project.urls`); "" if unknown."""
+    """Address of the documentation in the package's metadata (`project.urls`); "" if unknown."""
     try:
         urls = metadata("mxeon").get_all("Project-URL") or []
     except PackageNotFoundError:  # mxeon is not installed as a package

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of a report, which is a single, self-contained HTML file. Needs the extra `report`."""
+"""The page of a report as one self-contained HTML file. The extra `report` must be installed."""
 
 from collections import Counter
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
@@ -126,7 +126,7 @@ def nodes_of(results: Iterable[Result]) -> str:
 def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
     """The pictures of each material, and verdicts.
 
-    Materials of documents come before portraits of nodes, and wrong materials come before others.
+    Materials of documents come before portraits of nodes, and failed materials before others.
     """
     verdicts: dict[tuple[str, str, str], Result] = {}
     for each in run.results:

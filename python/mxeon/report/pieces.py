@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fills templates of HTML pages, and embeds images in pages. Needs the extra `report`."""
+"""Fills templates of HTML pages, and embeds images. The extra `report` must be installed."""
 
 import base64
 import io
@@ -22,7 +22,7 @@ SHOWN_SIZE = 256  # maximum pixels on a side of embedded pictures; larger pictur
 DIFFERENCE_COLORS = matplotlib.colormaps["inferno"]
 DIFFERENCE_CODES = DIFFERENCE_COLORS(np.arange(DIFFERENCE_COLORS.N), bytes=True)[:, :3]
 NOT_JUDGED = (96, 99, 104)
-FAST = 1  # level of zlib; takes a third of the default time, for a third more bytes
+FAST = 1  # level of zlib that takes a third of the default time for a third more bytes
 
 
 def generate_page(

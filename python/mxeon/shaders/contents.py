@@ -50,7 +50,7 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
     """
     file, library = source
     try:
-        with warnings.catch_warnings(action="ignore"):  # mxeon reports these elsewhere
+        with warnings.catch_warnings(action="ignore"):  # these warnings are reported elsewhere
             document = read_document(file, library, policy=policy)
     except (MxeonError, OSError) as error:
         return (

@@ -63,7 +63,7 @@ KNOWN: Mapping[str, Any] = {
 def evaluate(text: str, names: Mapping[str, Any]) -> Any:
     """Value of an expression with the variables and functions in `names` and KNOWN.
 
-    Raises ShaderError for invalid expressions, and NotRun for unsupported ones.
+    Raises ShaderError for invalid expressions, and NotRun for unsupported expressions.
     """
     text = " ".join(COMMENT.sub(" ", text).split())
     if len(text) > LONGEST:

@@ -36,7 +36,7 @@ def has_functions(library: str, language: str = "glsl") -> bool:
 
 
 def twins(language: str, library: str) -> str:
-    """Text, in one language, of the files that GLSL and OSL share, with expanded includes."""
+    """Text, in one language, of the files that exist in both languages, with expanded includes."""
     stems = [
         stem
         for stem in TWINS
@@ -46,10 +46,7 @@ def twins(language: str, library: str) -> str:
 
 
 def parts(text: str) -> Parts:
-    """The functions and constants that a text defines, as lists of tokens.
-
-    GLSL's keywords replace OSL's keywords.
-    """
+    """Functions and constants of a text, as tokens. GLSL's keywords replace OSL's keywords."""
     found = dict(re.findall(r"^#define (\w+) (.+)$", text, re.MULTILINE))
     for match, body in _definitions(text):
         found[match[1]] = match[0] + re.sub(r"^#.*\n?", "", body, flags=re.MULTILINE)
@@ -96,7 +93,7 @@ def parameters(text: str, function: str) -> tuple[tuple[str, str], ...]:
 def call(
     text: str, function: str, arguments: Sequence[ArrayLike]
 ) -> tuple[dict[str, tuple[str, ArrayLike]], str]:
-    """Type and value of each argument of a function, keyed by parameter name; text of the call."""
+    """Types and values of a call's arguments, keyed by parameter name, and the text of the call."""
     pairs = zip(parameters(text, function), arguments, strict=True)
     values = {name: (kind, value) for (kind, name), value in pairs}
     return values, f"{function}({', '.join(values)})"
@@ -147,7 +144,7 @@ def dispatched(text: str, functions: Iterable[str], language: str) -> str:
 
 
 def slot_names(kinds: Iterable[str]) -> list[str]:
-    """The parameters of the dispatcher that a function with parameters of these types receives.
+    """Names of the dispatcher's parameters that a function with these parameter types receives.
 
     >>> slot_names(["vec3", "float", "vec3"])
     ['vec3_0', 'float_0', 'vec3_1']

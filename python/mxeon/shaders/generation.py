@@ -67,10 +67,7 @@ DEFINED = re.compile(r"(?:#define|\b(?!return\b|else\b)\w+)\s+(mx_\w+)")
 
 
 class ApproximationWarning(UserWarning):
-    """A renderer only approximates a shader's model.
-
-    The message says where the renderer and the model differ.
-    """
+    """A renderer only approximates a shader's model. The message states the difference."""
 
     def __init__(self, element: str, approximation: str) -> None:
         super().__init__(f"{element}: {approximation}")
@@ -309,10 +306,7 @@ def check_generator(library: str, target: str) -> None:
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
-    """The inputs of a shader.
-
-    Inputs of nodes that the generator adds have no path, so the path is the name of the variable.
-    """
+    """Inputs of a shader. The path of an added node's input is the name of the variable."""
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares uniforms as inputs
     return tuple(

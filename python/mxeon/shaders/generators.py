@@ -85,7 +85,7 @@ def context_of(
     methods: Methods = UNCHOSEN,
     client: Collection[str] = (),
 ) -> mx_gen.GenContext:
-    """A generator's context for a single document, because contexts cache implementations by name.
+    """A generator's context for one document only, because contexts cache implementations by name.
 
     With `lights`, MaterialX's directional light is bound as light type 1 on rasterized targets.
     `client` lists options to turn on. With any of these options, `lights` also binds point and spot
@@ -134,10 +134,7 @@ def generated(
 
 @cache
 def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
-    """The tokens in includes, and their replacements.
-
-    A generator has the replacements only after generating a first shader.
-    """
+    """Replacements of tokens in includes. A generator has none before generating a shader."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)

@@ -64,17 +64,14 @@ class Nodes:
         return path
 
     def port(self, path: Path, name: str) -> mx.Input | None:
-        """The input with this name of a node, or else of the node's nodedef, or else None."""
+        """A named input of a node, or of the node's definition; None if there is no such input."""
         if not (element := self.elements.get(path)):
             return None
         definition = element.getNodeDef()
         return element.getInput(name) or (definition and definition.getActiveInput(name)) or None
 
     def upstream(self, outer: Path, port: mx.PortElement) -> Path | None:
-        """Path of the node that is connected to an input or output, or None.
-
-        The input or output lies inside the node at `outer`.
-        """
+        """Path of the node connected to a port, which lies inside the node at `outer`; or None."""
         if not (node := port.getConnectedNode()):
             return None
         graph, scope = node.getParent(), port.getParent()
@@ -165,7 +162,7 @@ class Walk(Nodes):
         return self.upstream(path[:-1], port) if port else None
 
     def value(self, path: Path, name: str) -> str | None:
-        """Text of an input's value. None if a node computes the value, or without such an input."""
+        """Text of an input's value; None without such an input, or if a node computes the value."""
         _, port = self._resolved(path, name)
         return None if port is None or self.source(path, name) else str(port.getValueString())
 

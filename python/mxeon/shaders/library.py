@@ -36,7 +36,7 @@ TARGETS = ("genglsl", "essl", "genmsl", "genslang", "genosl", "genmdl", "genosln
 
 @cache
 def data_folder() -> Path:
-    """The data folder of the installed package, or the checkout; eonlib lies in this folder."""
+    """The folder that contains eonlib: the data of the installed package, or else the checkout."""
     installed = Path(__file__).resolve().parents[1] / "data"
     return installed if installed.is_dir() else Path(__file__).resolve().parents[3]
 
@@ -48,7 +48,7 @@ def eonlib_folder() -> Path:
 
 
 def documents_folder(part: str = "eonlib") -> Path:
-    """Folder of all MaterialX documents of eonlib, or of the documents of its part `diffuse`."""
+    """Folder of eonlib's MaterialX documents, or the subfolder for the part "diffuse"."""
     # A folder with the name `libraries` would hide MaterialX's folder of the same name.
     installed = eonlib_folder() / "documents"
     folder = installed if installed.is_dir() else eonlib_folder()
@@ -57,7 +57,7 @@ def documents_folder(part: str = "eonlib") -> Path:
 
 @cache
 def kind_of(library: str) -> str:
-    """The entry of LIBRARIES that a library is or copies; OVERLAY for other folders.
+    """The entry of LIBRARIES that a library equals or copies; OVERLAY for other folders.
 
     A folder that replaces some or all of MaterialX's libraries counts as "stock".
     """
@@ -162,7 +162,7 @@ def load_library(
 ) -> mx.Document:
     """A MaterialX document with the standard libraries and, by default, eonlib.
 
-    The document is cached and shared: attach the document with `Document.setDataLibrary`.
+    The document is cached and shared, so attach the document with `Document.setDataLibrary`.
 
     - `library`: "eonlib", "stock" for unmodified MaterialX, or a folder. A folder replaces some or
       all of MaterialX's libraries, or is loaded before MaterialX's libraries; see
@@ -187,11 +187,7 @@ def load_library(
 
 @lru_cache(maxsize=LOADED)
 def read_library(library: str, profile: str | None, definitions: tuple[str, ...]) -> mx.Document:
-    """The cached part of `load_library`.
-
-    The function has no default arguments, because the cache would store an omitted argument and an
-    equal, explicit argument separately.
-    """
+    """Cached part of `load_library`. All arguments are required, so equal calls share a key."""
     check_version()
     if profile is not None:
         assert_known("profile", profile, PROFILES)
@@ -235,7 +231,7 @@ def read_library(library: str, profile: str | None, definitions: tuple[str, ...]
 
 
 def _documents(folder: AnyPath, rule: str) -> list[Path]:
-    """The MaterialX documents in a folder. Raise InputError, with `rule`, if there are none."""
+    """MaterialX documents in a folder. Raise InputError with the text `rule` if there are none."""
     documents = sorted(Path(folder).rglob("*.mtlx")) if str(folder) else []
     if not documents:
         empty = not any(names for *_, names in os.walk(folder))

@@ -57,7 +57,7 @@ def export_library(path: AnyPath) -> Path:
     if target.suffix == ".zip":
         with replacing(target) as temporary, ZipFile(temporary, "w") as archive:
             for name, data in _content().items():
-                entry = ZipInfo(f"{target.stem}/{name}")  # the date is 1980, so archives are equal
+                entry = ZipInfo(f"{target.stem}/{name}")  # the fixed date makes archives equal
                 entry.external_attr = 0o644 << 16
                 archive.writestr(entry, data, ZIP_DEFLATED)
         return target

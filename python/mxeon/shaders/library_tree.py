@@ -17,8 +17,7 @@ of a whole or a part from a temporary folder, `libraries`, where no installed fi
 file of the library.
 
 A library is trusted, so a library may name any file. Pipes, devices and files that are not UTF-8
-are still refused with one line, because MaterialX would wait, fill the memory, or write shaders
-that cannot be decoded.
+are still refused, because MaterialX would wait, fill the memory, or write unreadable shaders.
 """
 
 import os
@@ -96,10 +95,7 @@ def _tree(folder: str) -> Tree:
 
 
 def files_in(folder: str) -> Iterator[tuple[str, str]]:
-    """Relative path and full path of every file in a folder.
-
-    Links to folders are followed, and hidden files are skipped.
-    """
+    """Relative and full paths of a folder's files. Links are followed, and hidden files skipped."""
     for top, folders, names in os.walk(folder, followlinks=True):
         home = os.path.realpath(top)
         folders[:] = sorted(
@@ -190,7 +186,7 @@ def decode_source(data: bytes, path: AnyPath) -> str:
 
 
 def included(line: str) -> str:
-    """The file that a line of source includes: the text between the outer quotes; or "".
+    """The file that a line of source includes, which is the text between the outer quotes; or "".
 
     >>> included('#include "lib/mx_math.glsl"')
     'lib/mx_math.glsl'

@@ -15,7 +15,7 @@ CHOICES = {
 MOST_ITERATIONS = 64
 TABLE_SIZE = 64  # rows and columns of MaterialX's table of albedos
 # Targets for which MaterialX's shader of the albedo table does not compile. The values are the
-# wrong text, the cause, and the page in docs/upstream.
+# faulty text, the cause, and the page in docs/upstream.
 UNTABLED = {
     "essl": ("xy / u_albedoTableSize", "divides a vec2 by an int", "genessl_albedo_table"),
     "wgsl": ("texture(u_albedoTable,", "reads an undeclared sampler", "genwgsl_albedo_table"),
@@ -89,7 +89,7 @@ class Methods:
 
 UNCHOSEN = Methods()  # leaves all choices to the host
 GENERATED = Methods("fis", "refraction", "analytic", 2)  # the defaults of MaterialX's generators
-STORM = Methods("prefilter", "opacity", "analytic", 2)  # USD's, from hdSt/materialXFilter.cpp
+STORM = Methods("prefilter", "opacity", "analytic", 2)  # methods of USD in materialXFilter.cpp
 
 # Match the declarations of methods in generated text.
 ALBEDO = re.compile(r"^#define DIRECTIONAL_ALBEDO_METHOD (\d+)$", re.MULTILINE)

@@ -40,10 +40,7 @@ def set_options(
     airy: int = 2,
     **bound: bool,
 ) -> None:
-    """Set the options of `mxeon.shaders.methods.Methods`.
-
-    Raise LookupError if an option is missing.
-    """
+    """Set the options in `Methods`. Raise LookupError if MaterialX lacks one of the options."""
     for name, value in bound.items():
         if not offers(name):
             raise LookupError(f"MaterialX {mx.getVersionString()} has no option {BOUND[name]}")
@@ -58,10 +55,7 @@ def set_options(
 
 
 def unbound_members(options: mx_gen.GenOptions, count: int) -> "ctypes.Array[ctypes.c_int]":
-    """The integers after hwSpecularEnvironmentMethod.
-
-    Raise LookupError unless the integers have their defaults.
-    """
+    """The integers after hwSpecularEnvironmentMethod. Raise LookupError if a default differs."""
     address = ctypes.c_void_p.from_address(id(options) + VALUE).value or 0
     memory = (ctypes.c_int * (SIZE // ctypes.sizeof(ctypes.c_int))).from_address(address)
     states = []

@@ -63,10 +63,7 @@ TURN: Matrix = tuple(np.diag([-1.0, 1.0, -1.0, 1.0]).ravel().tolist())
 
 @dataclass(frozen=True, eq=False)
 class Client:
-    """Values that an application binds to a shader in addition to the scene.
-
-    The defaults are those of MaterialX's generators.
-    """
+    """Values that an application binds besides the scene. The defaults are the generator's."""
 
     lamps: tuple[Lamp, ...] = ()
     turn: Matrix = TURN  # maps the world to the environment map's frame
@@ -203,10 +200,7 @@ def local_directions(
 
 
 def tangents(normal: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Unit tangents (N, 3) of the sphere at unit normals (N, 3).
-
-    The tangents point east, where the y axis is north. At the poles, the tangents are 0.
-    """
+    """Eastward unit tangents (N, 3) at unit normals (N, 3) of the sphere; 0 at the poles of y."""
     east = np.stack([normal[:, 2], np.zeros(len(normal)), -normal[:, 0]], axis=1)
     unit: NDArray[np.float64] = east / np.maximum(
         np.linalg.norm(east, axis=1, keepdims=True), 1e-30

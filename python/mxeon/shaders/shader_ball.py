@@ -36,7 +36,7 @@ def _rotation(angle: float, axis: int) -> NDArray[np.float64]:
 
 
 OBJECT = _rotation(-TILT, 0)  # rotates from the picture's frame to the foot's frame
-BELT = _rotation(ROLL, 2) @ _rotation(0.35, 0)  # rotates to the belt's frame
+BELT = _rotation(ROLL, 2) @ _rotation(0.35, 0)  # rotates from the foot's frame to the belt's frame
 
 
 def _cylinder(points: Floats, radius: float, height: float) -> Floats:
@@ -49,7 +49,7 @@ def _cylinder(points: Floats, radius: float, height: float) -> Floats:
 
 
 def distance(points: Floats) -> Floats:
-    """Lower bound of the signed distance from the shape to points (..., 3) in the picture's frame."""
+    """Lower bound of the signed distance from the shape to points (..., 3) in picture space."""
     upright = points @ OBJECT.T
     inside = (upright - CENTER) @ BELT.T
     radius = np.linalg.norm(inside, axis=-1)

@@ -106,10 +106,7 @@ def _drop_closures(document: mx.Document) -> None:
 
 
 def _without_nodedef(document: mx.Document, graph: mx.NodeGraph) -> mx.NodeGraph:
-    """A copy of a nodegraph that implements a node, as an independent nodegraph.
-
-    The inputs of the copy have the defaults of the node's definition.
-    """
+    """A copy, with the nodedef's defaults, of a nodegraph that implements a node."""
     copy = document.addNodeGraph(document.createValidChildName(f"NG_{NAME}"))
     copy.copyContentFrom(graph)
     copy.removeAttribute("nodedef")

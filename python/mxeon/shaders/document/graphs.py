@@ -41,10 +41,7 @@ def reachable(
 
 
 def heights(graph: Graph[Key], order: Iterable[Key]) -> dict[Key, int]:
-    """The height of each key in a graph.
-
-    The height is the number of keys on the longest path from the key to a key without parts.
-    """
+    """Number of keys on the longest path from each key to a key without parts, ends included."""
     height: dict[Key, int] = {}
     for key in order:
         height[key] = 1 + max((height[part] for part in graph[key]), default=0)
@@ -191,6 +188,6 @@ def _inputs(element: mx.Element | None) -> int:
 
 
 def surface_shader(document: mx.Document, path: str) -> mx.Node:
-    """The surface shader of the material at a name path, or the node itself if not a material."""
+    """The surface shader of the material at a name path; a shader is returned unchanged."""
     element = document.getDescendant(path)
     return next(iter(mx.getShaderNodes(element)), element)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Warnings about documents that MaterialX accepts but misreads.
 
-Each kind of warning is issued once per document, for the first element concerned.
+Each rule leads to at most one warning about a document, which is about the first wrong element.
 """
 
 import ctypes
@@ -22,10 +22,7 @@ HALF_PI = ctypes.c_float(math.pi / 2.0).value  # MaterialX's float32, slightly a
 
 
 class DocumentWarning(UserWarning):
-    """A part of a document that MaterialX accepts but misreads.
-
-    The message names the element, the rule and the value.
-    """
+    """A part of a document that MaterialX accepts but misreads."""
 
     def __init__(self, message: str) -> None:
         super().__init__(one_line(message))
@@ -40,10 +37,7 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """Files that a shader names do not exist.
-
-    The warning is raised as an error by functions that have to read the files.
-    """
+    """Files that a shader names but that do not exist. An error where the files must be read."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
@@ -176,7 +170,7 @@ def _unknown_space(element: mx.ValueElement) -> str | None:
 
 
 def _unconnected(element: mx.Element) -> str | None:
-    """Warning about an input whose `nodename` is no node's name; it may be a nodegraph's name."""
+    """Warning about an input whose `nodename` names no node but, for example, a nodegraph."""
     if not element.isA(mx.Input) or not element.getNodeName() or element.getConnectedNode():
         return None
     rule = f"must be connected to a node; got nodename {element.getNodeName()!r}"

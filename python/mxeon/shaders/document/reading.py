@@ -37,7 +37,7 @@ SIMILAR = 0.85  # minimum similarity of suggested categories, which share ending
 class Document:
     """A checked document."""
 
-    content: mx.Document  # has its data library attached
+    content: mx.Document  # document with its data library attached
     renderables: tuple[mx.TypedElement, ...]  # one or more renderable elements
     nodes: int  # number of nodes in all shaders; a nodegraph counts at each use
     missing: tuple[str, ...] = ()  # a message for each missing file that a shader names
@@ -69,7 +69,7 @@ def read_document(
         and not os.path.isfile(source)  # a path may also begin with `<`
     ):
         _Reader(policy, Path.cwd()).read_text(content, source)
-    elif os.path.isfile(source):  # reading a pipe or a device may not end
+    elif os.path.isfile(source):  # reading a pipe or a device may never end
         path = Path(source).resolve()
         try:
             str(path).encode()
@@ -120,7 +120,7 @@ def read_document(
 def _resolve_files(
     document: mx.Document, elements: Iterable[mx.Element], folders: list[Path]
 ) -> None:
-    """Make a file name absolute if the file, or a set of textures, exists in one of the folders."""
+    """Make file names absolute for files and sets of textures that exist in one of the folders."""
     path = mx.FileSearchPath()
     for each in folders:
         path.append(mx.FilePath(str(each)))
@@ -232,7 +232,7 @@ class _Reader:
         return ignored
 
     def _include(self, document: mx.Document, name: str, title: str) -> None:
-        """Read a file that the document `title` includes; the real path identifies the file."""
+        """Read a file that the document `title` includes."""
         base = self._home if title == TEXT else Path(title).parent
         folders = [base, self._home, *map(Path, self._policy.path)]
         paths = [os.path.realpath(each / name) for each in folders]
@@ -312,11 +312,8 @@ def _check_version(document: mx.Document, title: str) -> None:
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
-    """Faults of a node's inputs, each with the input.
-
-    An input must be known, have the right type, and not be connected to a missing node.
-    """
-    if not (definition := node.getNodeDef("", True)):  # inputs may differ
+    """A node's inputs that are unknown, mistyped or connected to a missing node, and the faults."""
+    if not (definition := node.getNodeDef("", True)):  # the definition may have other inputs
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
     for each in node.getInputs():

@@ -62,7 +62,7 @@ def check_inside(path: AnyPath, home: Path, policy: Policy, prefix: str) -> None
 
 
 def file_fault(element: mx.ValueElement, policy: Policy) -> str:
-    """Why the file of an input, or a file in a set of textures, must not be read; otherwise ""."""
+    """The reason why an input's file or set of textures must not be read; "" if there is none."""
     text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
         return f"{prefix} must name a file without quotes and backslashes; got {text}"
@@ -97,7 +97,7 @@ def foreign_code(document: mx.Document) -> list[mx.Implementation]:
     """Implementations with the document's own shader code."""
     return [
         each
-        for each in document.getChildren()  # getImplementations includes the library
+        for each in document.getChildren()  # getImplementations includes the data library
         if each.isA(mx.Implementation) and any(map(each.hasAttribute, CODE))
     ]
 
@@ -172,10 +172,7 @@ def _text(path: str, policy: Policy) -> str:
 
 
 def _names(text: str) -> Iterator[tuple[str, str]]:
-    """Keys and values of the attributes that may name files.
-
-    Each value is listed without a prefix and with every prefix.
-    """
+    """Keys and values of attributes that may name files, without and with each prefix."""
     found = dict.fromkeys(
         (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
@@ -234,7 +231,7 @@ def files_read(
 def _library_files(library: str) -> Iterator[str]:
     """Documents and sources in the folders of a library, and the files that these include."""
     for folder in library_folders(library):
-        profiles = (folder / profile for profile in PROFILES)  # contain documents that end in .xml
+        profiles = (folder / profile for profile in PROFILES)  # folders of documents (*.xml)
         names = [path for _, path in files_in(str(folder)) if path.endswith(FILES)]
         for path in (*names, *(str(file) for each in profiles for file in each.glob("*.xml"))):
             yield path
@@ -246,5 +243,5 @@ def _library_files(library: str) -> Iterator[str]:
 def digests(
     documents: Iterable[AnyPath], policy: Policy, libraries: Iterable[str] = ()
 ) -> dict[str, str]:
-    """SHA-256 of each file in `files_read`, keyed alike; "" for unreadable or special files."""
+    """SHA-256 of each file, with the keys of `files_read`; "" for unreadable or special files."""
     return {name: digest(path) for name, path in files_read(documents, policy, libraries).items()}

@@ -48,7 +48,8 @@ def check_sources(
     code = [each for each in code if each.hasFile() and target != UNREAD]
     targets = document.getTargetDef(target).getMatchingTargets() if code else ()
     # Each entry has the name of a file, the folder of the including file, a prefix for messages,
-    # and the depth of inclusion. The depth is None for files of expressions.
+    # and the depth of inclusion. The depth is None if the file contains an expression instead of
+    # functions.
     waiting = [
         (
             each.getFile(),
@@ -68,7 +69,7 @@ def check_sources(
         opened = TOKEN.sub(lambda token: tokens().get(token[0], token[0]), name)
         path = os.path.abspath(context.resolveSourceFile(opened, local).asString())
         path = path.partition("\0")[0]  # the operating system cuts names at a null character
-        missing = not os.path.lexists(path)  # MaterialX reports the file if used
+        missing = not os.path.lexists(path)  # MaterialX itself reports missing files
         if path in read or missing or references.library_path(path):
             continue
         read.add(path)

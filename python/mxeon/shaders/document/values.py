@@ -60,7 +60,7 @@ def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
 def flat(
     name: str, kind: str, value: Plain, document: mx.Document
 ) -> Iterator[tuple[str, str, Plain]]:
-    """Name, type and value of an input or of each member of a structure. Skips text values."""
+    """Name, type and value of an input or of each member of a structure, except for text values."""
     if parts := members(kind, document):
         values = value if isinstance(value, tuple) else ()
         for (part, inner), member in zip(parts, values, strict=False):
@@ -89,9 +89,7 @@ def _members(text: str, kind: str, document: mx.Document) -> tuple[Plain, ...]:
 
 
 def split(text: str, separator: str) -> list[str]:
-    """Split a text at the separators that are outside brackets.
-
-    The text ends at the first unmatched closing bracket.
+    """Split a text at separators outside brackets, up to the first unmatched closing bracket.
 
     >>> split("a;b;{c;d}} e", ";")
     ['a', 'b', '{c;d}']

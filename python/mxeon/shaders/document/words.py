@@ -40,7 +40,7 @@ WORD = re.compile(r"\w*", re.ASCII)
 # STRING matches lists of words and paths; MEMBERS also matches the members of a structure.
 STRING = re.compile(r"[\w .,:/+<>\[\]-]*", re.ASCII)
 MEMBERS = re.compile(r"[\w .,:/+<>\[\]{};-]*", re.ASCII)
-COMMENT = "//"  # the patterns exclude other comments
+COMMENT = "//"  # the patterns already exclude other comments
 ENDS_A_STRING = re.compile(r'["\\\x00-\x1f\x7f]')
 
 
