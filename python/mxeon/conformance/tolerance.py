@@ -158,7 +158,7 @@ def roundings(count: float, words: str = "") -> Term:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The largest error that passes, a sum of terms. It is rounded up unless `exact` is set."""
+    """The largest error that passes, which is a sum of terms, rounded up unless `exact` is set."""
 
     terms: tuple[Term, ...]
     quantity: Quantity = Quantity.VALUE
