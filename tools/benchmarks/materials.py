@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compilation and frame times of generated materials with eonlib, divided by times with stock."""
+"""Compilation and frame times of generated materials with eonlib and with stock MaterialX."""
 
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
@@ -15,7 +15,7 @@ from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 SIZE = 512  # width and height of the timed frames in pixels
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # processes per material, since llvmpipe is 1/6 to 2/5 slower in one of six
+PROCESSES = 7  # processes per material; in one of six, llvmpipe is 1/6 to 2/5 slower
 MESH = 128  # squares along a side of the mesh, whose cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
@@ -67,7 +67,7 @@ GOALS = {name: goal for group, goal in RATIOS for name in group}
 class Frame:
     """A material on a sphere that is drawn repeatedly with the same uniforms and buffers.
 
-    The setup and the drawing call functions of `mxeon.hosts.gl` separately, to be timed separately.
+    Setup and drawing are timed separately, so separate methods call functions of `mxeon.hosts.gl`.
     """
 
     def __init__(self, host, generated, size):

@@ -62,7 +62,7 @@ def eon(plugin, color, roughness):
 
 
 def cornell_box(mi, plugin, roughness):
-    """Mitsuba's Cornell box with EON on its diffuse surfaces."""
+    """Mitsuba's Cornell box with EON on all diffuse surfaces."""
     scene = mi.cornell_box()
     for name, each in scene.items():
         if isinstance(each, dict) and each.get("type") == "diffuse":

@@ -60,7 +60,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Print ratios of a sampler's variance and the exact sampler's, at r = 1, by light and view."""
+    """Print ratios of a sampler's variance to the exact sampler's, at r = 1, by light and view."""
     rows = {}
     for title, light in RADIANCES.items():
         ratios = [

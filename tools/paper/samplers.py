@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The samplers of EON that the paper compares, and the moments of their weights."""
+"""The samplers of EON that the paper compares, and the moments of the weights of samples."""
 
 from collections.abc import Callable
 from typing import NamedTuple

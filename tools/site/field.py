@@ -32,9 +32,9 @@ from mxeon.survey.field import Entry, by_harm, read_field
 from mxeon.survey.field_page import INPUTS, SCENES, Frame, frames, render
 
 DATA = Path(__file__).with_name("field.json")
-PICTURES = DATA.with_suffix(".webp")  # all portraits and difference maps, ACROSS per row
+PICTURES = DATA.with_suffix(".webp")  # all portraits and difference maps, ACROSS pictures per row
 SIZE, ACROSS = 96, 8
-PAGES = "upstream/{}.html"  # ledger pages, relative to the comparison's page in the built site
+PAGES = "upstream/{}.html"  # ledger pages, relative to field.html in the built site
 EXAMPLE = examples_folder() / "clay.mtlx"
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 LIBRARIES = ("eonlib", "stock")

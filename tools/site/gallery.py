@@ -101,8 +101,8 @@ def studio():
 def pictures(host, document):
     """The name, the pictures, and the difference of stock from eonlib for each material.
 
-    The last picture is made with eonlib. The first picture is made with stock MaterialX if stock
-    MaterialX can generate the material.
+    The last picture is made with eonlib. The first picture is made with stock MaterialX, unless
+    stock MaterialX cannot generate the material.
     """
     shaders, scene = [], replace(STUDIO, size=SIZE)
     if "furnace" in document.stem:

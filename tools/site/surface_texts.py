@@ -35,73 +35,24 @@ OPTIONS = [word for name in NAMES for word in ("--node", name)]
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
 )
-# Statements without a check, as specification, section, statement and reason. fmt: off
+# Statements without a check, as specification, section, statement and reason.
+# fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),
-    (
-        OPENPBR,
-        "Translucent base",
-        "extinction and scattering from color, depth and scatter",
-        TRANSPORT,
-    ),
-    (
-        OPENPBR,
-        "Translucent base",
-        "dispersion by an Abbe number",
-        "no node of the graph reads the inputs",
-    ),
-    (
-        OPENPBR,
-        "Opacity",
-        "geometry_opacity blends with what is behind",
-        "the check `alpha` of `surface` judges it",
-    ),
+    (OPENPBR, "Translucent base", "extinction and scattering from color, depth and scatter", TRANSPORT),
+    (OPENPBR, "Translucent base", "dispersion by an Abbe number", "no node of the graph reads the inputs"),
+    (OPENPBR, "Opacity", "geometry_opacity blends with what is behind", "the check `alpha` of `surface` judges it"),
     (OPENPBR, "Emission", "nits", "the conversion is the renderer's"),
-    (
-        OPENPBR,
-        "Thin-walled mode",
-        "the ladder of reflections in a sheet of glass",
-        "environment lookups have one direction of transmission",
-    ),
-    (
-        STANDARD,
-        "Transparency",
-        "opacity by color",
-        "the check `alpha` of `surface` judges its luminance",
-    ),
-    (
-        STANDARD,
-        "Specular transmission",
-        "depth, scatter, dispersion",
-        "no node of the graph reads the inputs",
-    ),
-    (
-        STANDARD,
-        "Specular transmission",
-        "an index of 1 and no film on thin walls",
-        "environment lookups do not show the index",
-    ),
+    (OPENPBR, "Thin-walled mode", "the ladder of reflections in a sheet of glass", "environment lookups have one direction of transmission"),
+    (STANDARD, "Transparency", "opacity by color", "the check `alpha` of `surface` judges its luminance"),
+    (STANDARD, "Specular transmission", "depth, scatter, dispersion", "no node of the graph reads the inputs"),
+    (STANDARD, "Specular transmission", "an index of 1 and no film on thin walls", "environment lookups do not show the index"),
     (STANDARD, "Subsurface scattering", "radius and anisotropy", "the text stipulates no model"),
-    (
-        GLTF,
-        "3.9",
-        "occlusion, normal and alpha modes",
-        "textures and coverage are the client's; no node reads `occlusion`",
-    ),
-    (
-        GLTF,
-        "KHR_materials_volume",
-        "thickness and attenuation",
-        "no connected node of the graph reads the inputs",
-    ),
+    (GLTF, "3.9", "occlusion, normal and alpha modes", "textures and coverage are the client's; no node reads `occlusion`"),
+    (GLTF, "KHR_materials_volume", "thickness and attenuation", "no connected node of the graph reads the inputs"),
     (GLTF, "KHR_materials_dispersion", "dispersion", "no node of the graph reads the input"),
     (USD, "Preview Surface", "displacement, occlusion", "no node of the graph reads the inputs"),
-    (
-        USD,
-        "Preview Surface",
-        "parts below opacityThreshold are not rendered",
-        "the check `alpha` of `surface` judges it",
-    ),
+    (USD, "Preview Surface", "parts below opacityThreshold are not rendered", "the check `alpha` of `surface` judges it"),
 )
 # fmt: on
 
@@ -125,7 +76,7 @@ def rows(
 
 
 def actual_form(result: Result) -> str:
-    """The formula that a shader uses against the specification, with the error, or "" if none."""
+    """The formula that a shader uses instead of the specification's, with the error, or ""."""
     if result.verdict == PASSED:
         return ""
     cause = result.diagnosis.first

@@ -253,7 +253,7 @@ class Wall:
 
     @cached_property
     def materials(self) -> list[tuple[str, str]]:
-        """Materials for which many hosts have pictures, at least half of the largest number."""
+        """Materials with pictures of more hosts than half of the largest number of hosts."""
         hosts = defaultdict(set)
         for document, element, _, host, _ in self.images:
             if document != PORTRAIT:

@@ -23,7 +23,7 @@ COMMENT = "SPDX-License-Identifier"  # part of the first comment of every file
 
 @dataclass(frozen=True)
 class Mutant:
-    """One wrong change of a file of eonlib."""
+    """A single wrong change in a file of eonlib."""
 
     name: str  # unique name in the table
     group: str  # title of the mutated implementation

@@ -224,7 +224,7 @@ class SchemataHost(gl.GlHost):
 
 
 def _numbers_at(text: str, error: str) -> set[int]:
-    """Numbers of mutants at compiler errors: on the same line, or on the last line with mutants."""
+    """Numbers of mutants on the line of each compiler error, or on the last line before."""
     lines, found = text.splitlines(), set[int]()
     for place in map(int, ERROR.findall(error)):
         numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
@@ -283,7 +283,7 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def differs_from_glsl(mutant: Mutant) -> bool:
-    """Whether a mutated OSL function or constant differs from GLSL, as the check `languages` sees."""
+    """Whether a mutated OSL function or constant differs from GLSL, so `languages` must fail."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (functions.parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
@@ -311,7 +311,7 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects: title, flag for combinations of subjects, shader text, and function with checks."""
+    """Subjects with a title, flag for combinations, text of the shader, and function with checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
     # Films are checked before transmission, because transmission runs the same code without a film.

@@ -43,7 +43,7 @@ PATH = "genglsl/path/"  # folder of code for path tracers, which no check runs
 # because checks on hosts cannot detect all mutants of the folder.
 FOLDER_TESTS = {
     PATH: ("tests/shaders/test_path_tracing.py",),
-    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # run the code in Blender's OSL
+    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # run in Blender's OSL
     operators.ENVIRONMENT: (
         "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
         "tests/hosts/test_document_hosts.py::"
@@ -136,7 +136,7 @@ def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
     return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
 
 
-_original_failures = cache(_failed)  # one result, since eonlib is not mutated
+_original_failures = cache(_failed)  # cached, since eonlib itself is not mutated
 
 
 # --- tasks of a library ---------------------------------------------------------------------------
@@ -268,7 +268,7 @@ MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
 WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-# Copies of mutants do not contain Blender.
+# Mutated copies of the repository do not contain Blender.
 BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
@@ -299,4 +299,4 @@ def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     return test or "import", f"{file}: {message}" if message else file
 
 
-_original_failure = cache(_failure)  # one result, since this package is not mutated
+_original_failure = cache(_failure)  # cached, since this package is not mutated

@@ -9,7 +9,7 @@ from tools.paper.claims import Measured, Section
 COLORS = np.linspace(0.0, 1.0, 401)
 ROUGHNESS = np.linspace(0.0, 1.0, 101)
 STATED = 3e-3
-# A float64 formula counts as failed if its error exceeds a float32 rounding.
+# A float64 formula counts as failed if the error exceeds a rounding of float32.
 FLOAT32 = 2.0**-24
 SECTION = Section("Appendix A: inversion of the albedo")
 claim = SECTION.claim

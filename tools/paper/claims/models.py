@@ -44,7 +44,7 @@ def qon_gain() -> Measured:
     least=ROUNDING,
 )
 def full_gain() -> Measured:
-    """Largest albedos minus 1, or 1 minus the largest albedos for the high sigmas."""
+    """Largest albedos minus 1 for low sigmas, and 1 minus the largest albedos for high sigmas."""
     mu = np.array([1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2])
     albedos = np.array(
         [albedo_dir_quadrature(diffuse.oren_nayar_brdf, mu, 1.0, s).max() for s in SIGMA]

@@ -91,7 +91,7 @@ def patches_of(page: str) -> list[Path]:
 
 
 def own_diff(page: str) -> str:
-    """The diff in the text of a page; "" if the repair of the defect is a patch."""
+    """The diff in the text of a page, or "" if the repair of the defect is a patch."""
     return "".join(re.findall(r"(?ms)^```diff\n(.*?)^```", issues()[page].text))
 
 

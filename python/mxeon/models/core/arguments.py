@@ -121,7 +121,7 @@ def lead_shape(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -
 
 
 def broadcastable(vectors: Mapping[str, Numbers], numbers: Mapping[str, Numbers]) -> list[Array]:
-    """All vectors, followed by all numbers. Raises ValueError if their shapes do not broadcast."""
+    """All vectors, followed by all numbers. Raises ValueError if the shapes do not broadcast."""
     lead_shape(vectors, numbers)
     return [*vectors.values(), *numbers.values()]
 
@@ -192,7 +192,7 @@ def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
 
 
 def checked_real(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an array of real numbers; no range is checked."""
+    """Argument as an array of real numbers, without a check of the range."""
     return _array(name, value, lambda array: array)
 
 
@@ -355,7 +355,7 @@ def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> 
 
 
 def _real(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an array. Raises ValueError for complex numbers, text, ragged lists and masks."""
+    """Argument as an array. Raises ValueError for complex numbers, text, ragged or masked arrays."""
     if np.ma.isMaskedArray(value):
         raise ValueError(f"{name} must not be a masked array, whose mask would be lost; fill it")
     try:

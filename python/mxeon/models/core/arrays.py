@@ -3,13 +3,13 @@
 
 A formula calls the standard's functions in the library of its arguments. The decorator `any_array` wraps public
 functions: if one argument is an array of PyTorch or JAX, all arguments are converted to that
-library, precision and device. Arguments are not checked while the library traces the function,
-because they have no values then.
+library, precision and device. Traced arguments are not checked, because a traced argument has no
+values.
 
 Automatic differentiation multiplies the derivatives of all steps, so a square root at 0 may lead to
 infinity times 0. The function `cosine` and the functions after it avoid such products. For NumPy,
-they equal the plain operations to the last bit. For other libraries, a separate branch returns the
-value at the end of the domain, with the derivative that the docstring states.
+these functions equal the plain operations to the last bit. For other libraries, a separate branch
+returns the value at the end of the domain, with the derivative that the docstring states.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Array: TypeAlias = NDArray[np.float64]
 # An array or a number. The result of a function has the type of its argument.
 Number = TypeVar("Number", Array, float)
 
-# Validated arguments in their original precision.
+# Validated arguments, in the precision of the caller's arrays.
 Numbers: TypeAlias = NDArray[Any]
 
 
@@ -135,7 +135,7 @@ def _converter(foreign: Sequence[object]) -> Callable[[object], object]:
             return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)
         if isinstance(value, bool) or not isinstance(value, PLAIN):
             return value
-        if isinstance(value, float | int):  # a constant for compilers
+        if isinstance(value, float | int):  # compilers get a constant
             return xp.asarray(value, dtype=dtype, **place)
         array = np.asarray(value)
         return xp.asarray(array, dtype=dtype, **place) if array.dtype.kind in "iuf" else value
@@ -224,7 +224,7 @@ def except_where(
     x: Array,
     interior: float,
 ) -> Array:
-    """formula(x), or `value` with derivative 0 where `edge(x)`; there, `formula` gets `interior`."""
+    """formula(x), or `value` with derivative 0 where `edge(x)`; `interior` then replaces x."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return formula(x)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Colors of spectra: the CIE 1931 standard observer, and linear Rec. 709."""
+"""Conversion of spectra to colors: the CIE 1931 standard observer, and linear Rec. 709."""
 
 from __future__ import annotations
 

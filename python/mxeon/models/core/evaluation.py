@@ -22,7 +22,7 @@ def evaluate(
 ) -> Array:
     """Values (..., C) of a reflection formula for arguments that broadcast, computed in blocks.
 
-    - `formula`: `formula(wo, wi, rho, *parameter)` computes one block, (C, ...). Its arguments are
+    - `formula`: `formula(wo, wi, rho, *parameter)` computes one block, (C, ...). All arguments are
       float64: directions (..., 3) with contiguous components, `rho` (C, ...) and the parameter
       (...). Axes of length 1 are not expanded, so terms that depend only on the material stay
       small.
@@ -40,7 +40,7 @@ def evaluate(
     if xp is not NUMPY:
         pair = {name: arguments.checked_directions(name, w) for name, w in pair.items()}
 
-    # NumPy directions are checked block by block, while they are in the cache.
+    # Directions in NumPy arrays are checked in each block, while the block is in the cache.
     def value(rho: Array, wo: Array, wi: Array, **rest: Array) -> Array:
         parts = {"wo": wo, "wi": wi}
         if xp is NUMPY:
@@ -64,7 +64,7 @@ def evaluate_material(
 ) -> Array:
     """Values (..., channels) of a formula for checked arguments that broadcast, computed in blocks.
 
-    - `formula`: `formula(**given)` computes one block, (channels, ...). Its arguments are float64:
+    - `formula`: `formula(**given)` computes one block, (channels, ...). All arguments are float64:
       vectors (C, ...), with components on the first axis, and numbers (...). Axes of length 1 are
       not expanded.
     - `vectors`: Arguments with components, (..., C): directions, colors and pairs.

@@ -3,7 +3,7 @@
 
 The combined lobes, `top` and `base`, are Zeltner sheens, because values and albedos of this sheen
 have closed forms. Rows with nested nodes combine the sum of `top` and `base`, whose albedo may
-exceed 1. Names of inputs are paths in the graph. Colors are white unless they are inputs.
+exceed 1. Names of inputs are paths in the graph. A color that is not an input is white.
 """
 
 from __future__ import annotations
@@ -135,7 +135,7 @@ def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe:
 
 
 def _unscaled(combine: Combine) -> Variant[Scattering]:
-    """The variant, permitted by the specification, in which scaling a lobe keeps the throughput."""
+    """The permitted variant in which a scaled lobe keeps the throughput before scaling."""
     title = "the throughput of the lobe before it is scaled"
     return _variant(title, combine, layered=False, permitted=True)
 

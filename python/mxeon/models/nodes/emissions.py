@@ -3,7 +3,8 @@
 
 Inputs are named by the node's ports. Inputs of nodes that combine emissions, and the color that
 `generalized_schlick_edf` scales, are named by their paths in the graph. If the emission that a
-Schlick curve scales is already evaluated, the input `base` is its radiance, (N, 3).
+Schlick curve scales is already evaluated, the input `base` has the radiance (N, 3) of that
+emission.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ def front_only(value: Value) -> Value:
 
 
 def _radiance(inputs: Inputs) -> Array:
-    """Radiance that a Schlick curve scales: the input `base` if present, or the color at BASE."""
+    """Radiance that a Schlick curve scales: the input `base` if present, or else a uniform color."""
     return inputs["base"] if "base" in inputs else inputs[BASE]
 
 

@@ -32,11 +32,11 @@ LIMITS = (0.001, 1.0)  # range to which MaterialX clamps every roughness
 def materialx_longitudinal(
     sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array
 ) -> Array:
-    """M_p as in MaterialX's mx_chiang_hair_bsdf.glsl, which follows an older implementation.
+    """Longitudinal scattering M_p as in mx_chiang_hair_bsdf.glsl, after an older implementation.
 
     The series of I_0 stops after ten terms. For x above 12, log I_0(x) contains only half of the
-    term 1 / (8 x). The cosine of a tilted direction keeps its sign, so x may be negative, where the
-    series is used even below -12. The logarithm of 2 is rounded to 0.6931.
+    term 1 / (8 x). The cosine of a tilted direction keeps its sign, so x may be negative. The
+    series is also used for x below -12. The logarithm of 2 is rounded to 0.6931.
     """
     a, b = cos_i * cos_o / v, sin_i * sin_o / v
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):

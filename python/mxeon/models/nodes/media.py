@@ -17,7 +17,7 @@ from mxeon.models.core.arrays import Array
 from mxeon.models.media import transmittance
 from mxeon.models.nodes.node import Inputs, Node, Variant, column, linear_nodes
 
-FIRST, SECOND = "first/absorption", "second/absorption"  # the two absorbing media
+FIRST, SECOND = "first/absorption", "second/absorption"  # absorption of two media
 AMOUNT, FACTOR = "medium/mix", "medium/in2"  # weight and factor of the first medium
 METER = 1.0  # assumed thickness, since surface shaders define no thickness
 Value = Callable[[Inputs], Array]

@@ -51,7 +51,8 @@ class Parameter:
 
     - `name`: MaterialX's name.
     - `default`: MaterialX's default, a tuple of three numbers for a color and of two for a pair.
-    - `quantity`: Name of the input in the functions of `mxeon.models`, which models also accept.
+    - `quantity`: Name of the input in the functions of `mxeon.models`, accepted in addition to
+      `name`.
     """
 
     name: str
@@ -75,7 +76,7 @@ class Parameter:
 
     @property
     def unit(self) -> str:
-        """Unit of the input; "1" if it has none."""
+        """Unit of the input, or "1" for a dimensionless input."""
         return UNITS.get(self.quantity, "1")
 
 
@@ -103,7 +104,7 @@ class Variant(Generic[Function]):
 
 @dataclass(frozen=True)
 class Node(Generic[Function]):
-    """A node of [MaterialX2026], or one of its modes."""
+    """A node of [MaterialX2026], or a mode of a node."""
 
     name: str
     title: str
@@ -118,7 +119,7 @@ class PbrNode(Node[Scattering]):
     """A mode of a BSDF node.
 
     - `value`: BSDF in 1/sr without the cosine, for weight 1.
-    - `albedo`: Directional albedo E for weight 1, tints included; clamped to 1.
+    - `albedo`: Directional albedo E for weight 1, tints included, clamped to 1.
     - `integral`: Integral of `value`, if this integral differs from `albedo` for some inputs.
     - `fixed`: Inputs that select the mode.
     - `layerable`: Whether the share 1 - E of the light passes to the layer below, where E is the

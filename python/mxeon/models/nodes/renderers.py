@@ -107,7 +107,7 @@ def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Ar
 
 
 def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
-    """`_lossless` for a dielectric of IOR above 1, otherwise the albedo of a smooth surface."""
+    """`_lossless` of a dielectric with IOR above 1, otherwise the albedo of a smooth dielectric."""
     smooth = DIELECTRIC_LOBE.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
     rough = _lossless(DIELECTRIC_LOBE, wo, inputs)
     return np.where(np.reshape(inputs["ior"], (-1, 1)) > 1.0, rough, _largest(smooth))

@@ -104,12 +104,12 @@ def _artistic(inputs: Inputs) -> dict[str, Array]:
 
 
 def _clipped(inputs: Inputs) -> dict[str, Array]:
-    """The color scaled to luminance 1, then with negative channels set to 0."""
+    """Blackbody color, scaled to luminance 1 before negative channels are set to 0."""
     return {"out": np.maximum(blackbody(_clamped(inputs, "temperature", *TEMPERATURES)), 0.0)}
 
 
 def _blackbody(inputs: Inputs) -> dict[str, Array]:
-    """The color with negative channels set to 0, then scaled to luminance 1."""
+    """Blackbody color, scaled to luminance 1 after negative channels are set to 0."""
     color = _clipped(inputs)["out"]
     return {"out": color / (color @ LUMINANCE)[..., np.newaxis]}
 
@@ -122,7 +122,7 @@ def _hair_roughness(inputs: Inputs) -> dict[str, Array]:
 
 
 def _unsquared_variance(inputs: Inputs) -> dict[str, Array]:
-    """Roughnesses whose first component is the standard deviation instead of the variance."""
+    """Roughness pairs whose first component is the standard deviation instead of the variance."""
     pairs = _hair_roughness(inputs)
     return {
         name: np.stack([np.sqrt(pair[..., 0]), pair[..., 1]], -1) for name, pair in pairs.items()

@@ -7,8 +7,8 @@
 
 Specular lobes have a Schlick curve and alpha = roughness^2. The specification permits any layering
 operator. Here the operator is albedo scaling. Parameters have the names of MaterialX's node, such
-as `base_color` for the specification's `baseColorFactor`. Each name in `but` replaces a formula.
-[glTF2021], sections 3.9 and B, and the extensions.
+as `base_color` for the specification's `baseColorFactor`. Each name in the argument `but` replaces
+a formula. [glTF2021], sections 3.9 and B, and the extensions.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ CLEARCOAT_F0 = 0.04
 
 
 def alphas(p: Parameters) -> Array:
-    """alpha along tangent and bitangent, (N, 2). `anisotropy_strength` increases only the first."""
+    """alpha along tangent and bitangent, (N, 2). `anisotropy_strength` affects only the former."""
     across = np.square(p["roughness"])
     along = lerp(across, 1.0, np.square(p["anisotropy_strength"]))
     return np.concatenate(np.broadcast_arrays(along, across), axis=1)

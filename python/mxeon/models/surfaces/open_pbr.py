@@ -12,8 +12,8 @@ r_base), and increases the roughness of the base's lobes to r'^4 = r^4 + 2 r_coa
 f_SSS is the Lambertian lobe with the specified color. In a rasterizer's environment, f_T is the
 share `transmission_color` of the light, and T_coat is the coat's color at normal incidence.
 
-Each name in `but` replaces a formula; `mxeon.conformance.specs.surface_texts` states which of these
-replacements the specification permits. [OpenPBR2026].
+Each name in the argument `but` replaces a formula. `mxeon.conformance.specs.surface_texts` states
+which of these replacements the specification permits. [OpenPBR2026].
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@
     f_sheen_layer = sheen sheen_color f_sheen + (1 - sheen E[f_sheen]) f_base
 
 The specification does not define how two roughnesses follow from roughness and anisotropy. Here
-MaterialX's node `roughness_anisotropy` computes the two roughnesses. Each name in `but` replaces a
-formula. [StandardSurface2020].
+MaterialX's node `roughness_anisotropy` computes the two roughnesses. Each name in the argument
+`but` replaces a formula. [StandardSurface2020].
 """
 
 from __future__ import annotations

@@ -7,7 +7,8 @@
 The reflectance of the specular workflow is `specularColor` at normal incidence and white at grazing
 incidence. The metalness workflow interpolates from ((1 - ior) / (1 + ior))^2 at normal incidence,
 and white at grazing incidence, to `diffuseColor`. The specification does not define layering. Here
-layering is albedo scaling. Each name in `but` replaces a formula. [UsdPreviewSurface2019].
+layering is albedo scaling. Each name in the argument `but` replaces a formula.
+[UsdPreviewSurface2019].
 """
 
 from __future__ import annotations
