@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Survey of renderers' own materials: engines, nodes, checks, and a page that compares them.
+"""Survey of the built-in materials of renderers, with a page that compares the renderers.
 
-`mxeon.hosts` and `mxeon.conformance` name no renderer: `mxeon.check` and the command register `ROWS`.
+`mxeon.hosts` and `mxeon.conformance` do not import this package. `mxeon.check` and the command line
+register `ROWS`.
 """
 
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ from mxeon.shaders.scene import BACK, SIDE
 
 
 def renderers() -> dict[str, tuple[type[Engine], Sequence[Any]]]:
-    """Engine and judged nodes of each renderer; also imports their checks and backends."""
+    """Engine and nodes of each renderer. The imports add checks and backends of the survey."""
     from mxeon.survey import checks as checks
     from mxeon.survey import cycles_native
     from mxeon.survey.browser import babylon, pathtracer, three

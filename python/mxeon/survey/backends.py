@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Backends for renderers' own nodes, which measure pictures or pairs of directions."""
+"""Backends that measure the built-in nodes of renderers in pictures or for pairs of directions."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ from mxeon.shaders.scene import FURNACE, Scene, sphere
 from mxeon.survey.facets import facet_points
 from mxeon.survey.specs import Material, RendererSpec
 
-FACET_PIXELS = 7169  # pixels of the polyhedron's picture that lie within one facet
-FEW_CALLS = samples.Counts(1 << 13)  # calls of a renderer's own function
-SHORTEST = 2.0**-10  # least |wo + wi| of special pairs: Fresnel's formulas square rounded cosines
-EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark to white, and rough to smooth
+FACET_PIXELS = 7169  # number of pixels that lie within one facet in a picture of the polyhedron
+FEW_CALLS = samples.Counts(1 << 13)  # number of calls of a renderer's function
+SHORTEST = 2.0**-10  # least |wo + wi| of special pairs, since Fresnel formulas square cosines
+EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark and bright colors, from rough to smooth
     {"color": (0.2, 0.5, 0.8), "roughness": 1.0},
     {"color": (0.02, 0.05, 0.1), "roughness": 1.0},
     {"color": (1.0, 0.8, 0.0), "roughness": 0.75},
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
     {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
 )
-# EEVEE stores the three channels of light in 32 bits; blue has the fewest bits.
+# EEVEE stores the three channels of light in 32 bits, of which blue has the fewest.
 COARSE_FACETS = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     Term(2.0**-6, "five bits below the leading one, cut off"),
@@ -47,12 +47,12 @@ FACET_NOISE = sum_of(
     quantity=Quantity.MEAN_ALBEDO,
     metric=mean_error,
 )
-# Burley's two factors have a product of at most 25/4.
+# The product of the two factors in Burley's model is at most 25/4.
 FACET_PAIRS = sum_in(Quantity.DIFFERENCE, roundings(16 * 2.5**2, "of numbers up to 25/4"))
 
 
 class Renderer(Protocol):
-    """Operations of an engine on its own nodes. An engine may support only some of them."""
+    """Functions of an engine with built-in nodes. An engine may lack some of these functions."""
 
     def node(self, material: Material, scene: Scene) -> Array:
         """Render the sphere or the polyhedron with a material; see `Host.picture`."""
@@ -60,17 +60,17 @@ class Renderer(Protocol):
     def pairs(
         self, material: Material, wo: Array, wi: Array, color: Array, roughness: Array
     ) -> Array:
-        """f cos(theta_i), (N, 3) in 1/sr, for unit vectors, normal +z and input values."""
+        """Values of f cos(theta_i) in 1/sr, (N, 3), for unit vectors, the normal +z and inputs."""
 
     def sample(self, wo: Array, u: Array, roughness: Array) -> Array:
-        """Directions (N, 3) that the renderer samples for EON, from u (N, 2) in [0, 1)."""
+        """Directions (N, 3) that the renderer draws for EON, given numbers u (N, 2) in [0, 1)."""
 
     def density(self, wo: Array, wi: Array, roughness: Array) -> Array:
-        """Density of `sample` in solid angle, (N,)."""
+        """Density of the directions that `sample` draws, per solid angle, (N,)."""
 
 
 class Native(backends.CyclesPictures):
-    """A renderer's own node, rendered on a sphere."""
+    """A built-in node of a renderer, rendered on a sphere."""
 
     abilities = Ability.OWN | Ability.LIGHT
 
@@ -85,7 +85,7 @@ class Native(backends.CyclesPictures):
 
     @property
     def claims(self) -> tuple[str, str]:
-        """Titles of the claimed model and of the form that the checks use."""
+        """Titles of the claimed model and of the published form that the checks use."""
         return self.node.claimed, reference.diffuse_model(self.node.model).title
 
     def image(self, inputs: samples.Values, scene: Scene) -> Array:
@@ -94,7 +94,7 @@ class Native(backends.CyclesPictures):
 
 
 class Exact(Native):
-    """A node on a sphere, for renderers whose points and light are exact up to rounding."""
+    """A node rendered on a sphere, if the renderer's points and light are exact up to rounding."""
 
     engine_errors: ClassVar[Errors] = {
         "value": backends.EXACT,
@@ -104,7 +104,7 @@ class Exact(Native):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Pictures for a control: one light is enough."""
+        """Pictures for a control, which needs only the first material."""
         return self.batches[:: len(EXACT_INPUTS)]
 
     @property
@@ -129,11 +129,11 @@ class Exact(Native):
 
 
 class Facets(Exact):
-    """A node rendered on the polyhedron; pictures in an environment have noise."""
+    """A node rendered on the polyhedron. Pictures under an environment have noise."""
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """Points in a white environment, for only two materials, because environments render slowly."""
+        """Points in a white environment, with only two materials to save time."""
         scene = replace(FURNACE, size=self.size)
         names = ("color", "roughness")
         return tuple(
@@ -158,7 +158,7 @@ class CoarseFacets(Facets):
 
 
 class FacetPairs(Facets):
-    """A node that can be evaluated for any pair; only environments need the polyhedron."""
+    """A node that is evaluated for any pair of directions. Environments need the polyhedron."""
 
     engine_errors: ClassVar[Errors] = {
         "value": FACET_PAIRS,
@@ -198,7 +198,7 @@ class FacetPairs(Facets):
 
 @lru_cache(maxsize=8)
 def facet_pairs(scene: Scene) -> backends.Pairs:
-    """Pairs at the pixels that lie within one facet of the polyhedron."""
+    """Pairs of directions at the pixels that lie within one facet of the polyhedron."""
     points = facet_points(scene.size)
     return backends.lit_pairs(points.normal[points.mask], scene)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a BRDF that is a Python function, for renderers and libraries with bindings."""
+"""Checks of a BRDF that is a Python function, such as a binding of a renderer or a library."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from mxeon.errors import InputError, assert_known
 from mxeon.hosts.base import Host, Identity
 from mxeon.models import table as reference
 
-# Only checks of values apply: a function has no environment branch and no flag.
+# Checks that apply to a function, which has no environment branch and no boolean input.
 KEYS = ("value", "integral", "black", "reciprocity", "lambert", "inputs", "finite")
 LIBRARY = "callable"
 
@@ -48,7 +48,7 @@ class CallableHost(Host):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ClaimedModel(DiffuseModelSpec):
-    """The spec of a function, which has the claimed model in place of a node."""
+    """The spec of a function, in which a claimed model takes the place of a node."""
 
     def document(self, inputs: samples.Values | None = None) -> str:
         return ""  # a function has no document
@@ -70,7 +70,7 @@ class Function(backends.Backend):
 
     @cached_property
     def edges(self) -> Batch:
-        """Pairs at the edges of the domain, and all pairs of other checks, for `finite`."""
+        """Pairs for the check `finite`: at the edges of the domain, and from all other checks."""
         batches = [super().edges]
 
         def record(batch: Batch) -> Batch:
@@ -86,7 +86,7 @@ class Function(backends.Backend):
         return Batch(wo, wi, {"color": rho, "roughness": roughness})
 
     def direct(self, batch: Batch) -> Array:
-        """pi f cos(theta_i), (N, 3); all channels are NaN if one is not finite."""
+        """Values of pi f cos(theta_i), (N, 3). If one channel is not finite, all are NaN."""
 
         def evaluated() -> Array:
             values = np.asarray(self.host.brdf(*_arguments(batch)), np.float64)
@@ -100,7 +100,7 @@ class Function(backends.Backend):
         return self._evaluations.value(cache.parts(batch), evaluated)
 
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Empty, (N, 0): a function has no environment branch."""
+        """An empty array (N, 0), because a function has no environment branch."""
         return np.empty((len(batch.wi), 0))
 
 
@@ -111,7 +111,7 @@ def _arguments(batch: Batch) -> tuple[Array, Array, Array, Array]:
 
 
 def _finite_rows(compared: Compared | Iterable[Compared]) -> Iterator[Compared]:
-    """Drop non-finite rows, which `finite` reports; keep all rows if none is finite."""
+    """Drop non-finite rows, which the check `finite` reports. Keep all rows if no row is finite."""
     for each in [compared] if isinstance(compared, Compared) else compared:
         expected = np.broadcast_to(each.expected, each.measured.shape)
         rows = np.asarray(np.isfinite(each.measured + expected).all(axis=1))
@@ -123,7 +123,7 @@ FINITE_VALUE = replace(diagnosis.VALUE, compared=lambda case: _finite_rows(diagn
 
 
 def _explain_not_finite(case: Case) -> Diagnosis:
-    """Report the number and region of non-finite values, and the arguments of the first one."""
+    """Report the number and region of non-finite values, and arguments of the first such value."""
     values = unbounded(edge_values(case))
     wrong = correct_except([values], EXACT, smallest([values], EXACT))
     point = point_of(values.batch, int(EXACT.wrong(values).argmax()))
@@ -131,7 +131,7 @@ def _explain_not_finite(case: Case) -> Diagnosis:
 
 
 def _finite_only(check: Check) -> Check:
-    """Restrict a check to finite values; the check `finite` reports the others."""
+    """Restrict a check to finite values. The check `finite` reports non-finite values."""
     if check.key == "finite":
         return replace(check, explain=_explain_not_finite)
     if check.key == "inputs":
@@ -145,15 +145,18 @@ def _finite_only(check: Check) -> Check:
 def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     """Run every check that applies to a function of directions and inputs.
 
-    - `brdf`: `brdf(wo, wi, rho, roughness) -> values`, with wo, wi and rho (N, 3), roughness (N,)
-      and values (N, 3) in 1/sr, without the cosine. The directions leave the surface, in the local
-      frame with the normal +z; roughness lies in [0, 1], or is sigma, in radian, in [0, pi/2] for
-      models that have one: `mxeon.models.table`.
-    - `model`: The required model: a row of `mxeon.models.table.DIFFUSE_MODELS` with a parameter.
-    - `name`: The function's name in the report; by default its `__name__`.
+    - `brdf`: A function `brdf(wo, wi, rho, roughness) -> values`. The shape of wo, wi and rho is
+      (N, 3), and the shape of roughness is (N,). The values, (N, 3) in 1/sr, do not include the
+      cosine. The directions leave the surface, in the local frame with the normal +z. Roughness is
+      in [0, 1]. For models with the parameter sigma, see `mxeon.models.table`, roughness is sigma
+      in radians, in [0, pi/2].
+    - `model`: The required model, which is a row of `mxeon.models.table.DIFFUSE_MODELS` that has a
+      parameter.
+    - `name`: The function's name in the report. The default is `__name__`.
 
-    Non-finite values fail one check; other checks judge the finite values. `mxeon.report.write`
-    writes a report; tests call `raise_for_failure`. ValueError for an unknown model or wrong shape.
+    Non-finite values fail one check, and the other checks judge the finite values.
+    `mxeon.report.write` writes a report, and tests can call `raise_for_failure`. Raises ValueError
+    for an unknown model or a wrong shape.
 
         >>> from mxeon.models import eon_brdf
         >>> {result.verdict for result in check_brdf(eon_brdf).results}

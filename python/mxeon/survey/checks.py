@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a renderer's sampler: the density, and whether samples follow the density."""
+"""Checks of a renderer's sampler, for the density and for samples that follow the density."""
 
 from collections.abc import Iterator
 from typing import cast
@@ -17,13 +17,13 @@ from mxeon.models.sampling import eon_cltc_pdf
 from mxeon.survey.backends import Renderer
 from mxeon.survey.specs import RendererSpec
 
-# A correct sampler exceeds this in one run of 3.5 million.
+# A correct sampler exceeds this limit in one of 3.5 million runs.
 CHI_SQUARE = single(5.0, Quantity.DEVIATIONS, "five standard deviations")
-# The density has the fourth power of the transformed direction, which loses three bits.
+# The density has the fourth power of the length of a transformed direction, so it loses three bits.
 OWN_DENSITY = sum_of(
     roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY
 )
-COSINES = (0.05, 0.3, 0.7, 0.99)  # view cosines
+COSINES = (0.05, 0.3, 0.7, 0.99)  # cosines of view directions
 SAMPLES = 1 << 15
 ROUGHNESS = 1.0
 
@@ -45,7 +45,7 @@ def _density(case: Case, batch: Batch) -> Array:
 
 
 def samples(case: Case) -> Measurement:
-    """Largest deviation of samples from their density, in standard deviations of a chi-square test.
+    """Largest deviation of samples from the density, in standard deviations of a chi-square test.
 
     The cosines of the views are COSINES, and the material has ROUGHNESS. A control needs one view.
     """
@@ -55,7 +55,7 @@ def samples(case: Case) -> Measurement:
 
 
 def _deviation(case: Case, mu: float) -> float:
-    """Deviation of one view's samples from their density, in standard deviations."""
+    """Deviation of the samples of one view from the density, in standard deviations."""
     rng, pole = generator(), np.array([0.0, 0.0, 1.0])
     wo = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
     draws = np.broadcast_to(wo, (SAMPLES, 3)), rng.random((SAMPLES, 2)), np.full(SAMPLES, ROUGHNESS)

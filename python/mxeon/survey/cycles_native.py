@@ -8,7 +8,7 @@ from mxeon.hosts.base import Array, Engine, Identity
 from mxeon.shaders.scene import Scene
 from mxeon.survey.specs import Material, node
 
-# Each node's type and sockets in Blender, set so that only the diffuse lobe remains.
+# Type and sockets of each node in Blender, with values for which only the diffuse lobe remains.
 MATERIALS: dict[str, Material] = {
     "Diffuse BSDF": {
         "kind": "ShaderNodeBsdfDiffuse",

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A convex polyhedron with known normals, for renderers that spread samples over a pixel.
 
-All samples of a pixel within a facet have the same normal. The shape is convex, so facets neither
-shadow nor light each other. Frame and camera are the same as in `mxeon.shaders.scene`.
+If a pixel lies within a facet, all samples of the pixel have the same normal. The shape is convex,
+so facets neither shadow nor light each other. Frame and camera are as in `mxeon.shaders.scene`.
 """
 
 from functools import lru_cache
@@ -11,34 +11,34 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-RINGS, SECTORS = 20, 40  # number of facets from pole to pole, and around the axis
-AXIS = (0.48, 0.6, 0.64)  # polar axis, tilted so that facets differ in both cosines
-MARGIN = 1.05  # pixels of this relative size must lie within one facet
+RINGS, SECTORS = 20, 40  # numbers of facets from pole to pole and around the axis
+AXIS = (0.48, 0.6, 0.64)  # polar axis, tilted to vary the cosines of both view and light
+MARGIN = 1.05  # relative size of the area around a pixel that must lie within one facet
 
 
 class Polyhedron(NamedTuple):
     vertices: NDArray[np.float64]  # points of the unit sphere
-    triangles: NDArray[np.int64]  # indices, counterclockwise from outside
+    triangles: NDArray[np.int64]  # indices of vertices, counterclockwise seen from outside
     normals: NDArray[np.float64]  # outward unit normals of the facets, in float64
     offsets: NDArray[np.float64]  # distances of the facets' planes from the origin
 
 
 class Points(NamedTuple):
     normal: NDArray[np.float64]
-    mask: NDArray[np.bool_]  # pixels within one facet
+    mask: NDArray[np.bool_]  # whether a pixel lies within one facet
 
 
 @lru_cache(maxsize=1)
 def polyhedron() -> Polyhedron:
-    """The polyhedron, whose vertices are a grid of angles around AXIS, rounded to float32.
+    """The polyhedron, whose vertices lie on a grid of polar angles around AXIS.
 
-    The facets are trapezoids, which are flat, and triangles at the poles.
+    Vertices are rounded to float32. The facets are triangles at the poles, and flat trapezoids.
     """
     polar, azimuth = np.linspace(0.0, np.pi, RINGS + 1), np.arange(SECTORS) * 2.0 * np.pi / SECTORS
     theta, phi = np.meshgrid(polar[1:-1], azimuth, indexing="ij")
     ring = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], -1)
     local = np.concatenate([[[0.0, 0.0, 1.0]], ring.reshape(-1, 3), [[0.0, 0.0, -1.0]]])
-    # Two axes perpendicular to AXIS complete its frame.
+    # Two axes perpendicular to AXIS complete a frame.
     axis = np.asarray(AXIS) / np.linalg.norm(AXIS)
     across = np.cross([0.0, 0.0, 1.0], axis)
     across /= np.linalg.norm(across)
@@ -54,7 +54,7 @@ def polyhedron() -> Polyhedron:
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     triangles = triangles[np.linalg.norm(areas, axis=1) > 0.0]
     one, two, three, four = (vertices[quads[:, index]] for index in range(4))
-    normals = np.cross(three - one, four - two)  # diagonals also work for triangles
+    normals = np.cross(three - one, four - two)  # also correct for triangles
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     offsets = (normals * (one + two + three + four)).sum(axis=1) / 4.0
     return Polyhedron(vertices, triangles, normals, offsets)
@@ -72,12 +72,12 @@ def facet_points(size: int) -> Points:
         mask &= other == facets[0]
     normal = polyhedron().normals[facets[0]]
     for array in (normal, mask):
-        array.flags.writeable = False  # shared by all callers
+        array.flags.writeable = False  # all callers share the cached arrays
     return Points(normal, mask)
 
 
 def _facets(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Index of the facet that each ray along -z hits first; -1 for none."""
+    """Index of the facet that each ray along -z hits first; -1 if the ray hits no facet."""
     _, _, normals, offsets = polyhedron()
     first, top = np.full(x.shape, -1), np.full(x.shape, np.inf)
     bottom = np.full(x.shape, -np.inf)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparison of renderers' nodes, from any number of reports."""
+"""A comparison of renderers' nodes, which is read from any number of reports."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,7 +31,8 @@ from mxeon.survey import ROWS, nodes
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
 BACK = "back"
-# Checks of each column, of which the first that a node has counts. BACK is judged by portraits.
+# Checks by column of the page. The first check that a node has counts. The column BACK has no
+# checks, because portraits are judged instead.
 CHECKS = {
     "direct": DIRECT,
     "surroundings": ("environment",),
@@ -78,7 +79,7 @@ class Entry:
 
     @property
     def harm(self) -> float:
-        """Largest error of a failed check; 0 if none failed, -1 if none ran."""
+        """Largest error of a failed check; 0 if no check failed, -1 if no check ran."""
         if self.verdict == NOT_RUN:
             return -1.0
         failed = [cell.error for cell in self.cells.values() if cell.verdict == FAILED]
@@ -86,14 +87,14 @@ class Entry:
 
     @property
     def cause(self) -> tuple[object, ...]:
-        """Properties of an entry; entries with equal properties share a row of the page."""
+        """Properties of an entry. Entries with equal properties share a row of the page."""
         verdicts = tuple((column, cell.verdict) for column, cell in self.cells.items())
         models = self.claimed, self.form, self.found, self.found_around
         return self.host, *models, verdicts, self.pages
 
     @property
     def found(self) -> str:
-        """The model found in direct light, or the reason why none is known."""
+        """The model found in direct light, or the reason why no model is known."""
         return model_of(self.cells["direct"], self.form or self.claimed)
 
     @property
@@ -104,7 +105,7 @@ class Entry:
 
 
 def by_harm(entries: Sequence[Entry]) -> list[list[Entry]]:
-    """Group entries by renderer and cause; the most harmful renderer, row and node come first."""
+    """Group entries by renderer and cause. The largest errors of failed checks come first."""
     rows: dict[tuple[object, ...], list[Entry]] = {}
     for entry in sorted(entries, key=lambda each: each.harm, reverse=True):
         rows.setdefault(entry.cause, []).append(entry)
@@ -113,7 +114,7 @@ def by_harm(entries: Sequence[Entry]) -> list[list[Entry]]:
 
 
 def model_of(result: Result, expected: str) -> str:
-    """The model that a check found, or the first cause of its failure in words."""
+    """The model that a check found, or a description of the first cause of a failure."""
     if result.verdict == PASSED:
         return expected
     if result.verdict == NOT_RUN:
@@ -127,17 +128,17 @@ def model_of(result: Result, expected: str) -> str:
 
 
 def reports_in(folder: AnyPath) -> list[Path]:
-    """Folders of reports: the folder itself, or its subfolders."""
+    """Folders that contain a report, which are the given folder or some of its subfolders."""
     if Path(folder, RESULTS).is_file():
         return [Path(folder)]
     return sorted(path.parent for path in Path(folder).glob(f"*/{RESULTS}"))
 
 
 def read_field(folders: Sequence[str | PathLike[str]]) -> tuple[Entry, ...]:
-    """Nodes that claim a rough diffuse model, from folders that are, or contain, reports.
+    """Nodes that claim a rough diffuse model, from folders of reports; see `reports_in`.
 
-    The last report on a host, version, library and node counts. Raises InputError if a folder has
-    no report, or no report has a node that claims a rough diffuse model.
+    If several reports have the same host, version, device, library and node, the last report
+    counts. Raises InputError if a folder has no report, or if no node claims a rough diffuse model.
     """
     entries = {}
     for folder in folders:
@@ -162,7 +163,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
         places.setdefault(place, {})[result.check] = result
     for place, results in places.items():
         direct = next((results[key] for key in DIRECT if key in results), None)
-        # A result does not name the claim if its host did not run.
+        # A result does not name the claimed model if the host did not run.
         default = native.get((place[0], place[2])) or claims.get(place[2])
         claimed = direct and (direct.claimed or default)
         if direct and claimed:
@@ -172,7 +173,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
                 for column, keys in CHECKS.items()
                 if any(key in results for key in keys)
             }
-            # Judge the largest error of the back-lit portrait with the tolerance of values.
+            # The tolerance for direct light judges the largest error of the back-lit portrait.
             if BACK in portraits and direct.tolerance is not None:
                 error, allowed = portraits[BACK].difference, direct.tolerance
                 verdict: Verdict = PASSED if error <= allowed else FAILED
@@ -190,7 +191,7 @@ def _portraits(report: Report, place: Place, folder: Path) -> Iterator[Portrait]
         if (each.document, each.host, each.library, each.element) != (PORTRAIT, *place):
             continue
         if each.reference and each.difference:
-            # Reports may come from anywhere, so use only the names of their files, not the paths.
+            # Reports may come from anywhere, so only the names of files are used, not the paths.
             image, model = (
                 folder / "pictures" / Path(file).name for file in (each.exr, each.reference)
             )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page that compares renderers, a self-contained HTML file. Needs the `report` extra."""
+"""The page that compares renderers, which is one HTML file. The `report` extra is required."""
 
 import math
 from collections import Counter
@@ -45,7 +45,7 @@ def write_field(entries: Sequence[Entry], file: str | PathLike[str]) -> Path:
 
 
 def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
-    """Read the portraits of a scene. Differences within the tolerance are dark in the maps."""
+    """Read the portraits of a scene. Errors within the tolerance are dark in difference maps."""
     for row, entry in enumerate(entries):
         portrait = entry.portraits.get(scene)
         if portrait is None:
@@ -63,11 +63,12 @@ def render(
     note: str = "",
     frames: Callable[[Sequence[Entry], str], Iterator[Frame]] = frames,
 ) -> Iterator[str]:
-    """Generate the page in pieces; pictures are read one by one.
+    """Generate the page in pieces, so that pictures are read one by one.
 
-    `pages` is the address of a page of the ledger, with `{}` for its name, or "" for no links.
-    `note` follows the counts. `frames` returns the portraits of the rows' first entries. The page
-    loads nothing, is complete without its script, and escapes the text of reports.
+    `pages` is the address of the pages about defects, with `{}` for the name of a page, or "" for
+    no links. `note` is text that follows the counts. `frames` returns the portraits of the first
+    entry in each row. The HTML loads no files, works without JavaScript, and escapes the text of
+    reports.
     """
     counts = Counter(entry.verdict for entry in entries)
     rows = by_harm(entries)
@@ -94,7 +95,7 @@ def render(
 
 
 def order(cell: Result | None) -> float:
-    """Sort key of a cell: error over tolerance. Checks that did not run come last."""
+    """Sort key of a cell, the error divided by the tolerance. Checks that did not run come last."""
     ratio = math.inf if cell is None or cell.error is None else share(cell)
     return ratio if math.isfinite(ratio) else 1e30
 

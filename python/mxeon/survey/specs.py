@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Specs of renderers' own nodes."""
+"""Specs of the built-in nodes of renderers."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ Material: TypeAlias = Mapping[str, Any]  # properties of a renderer's material
 
 BOTH = ("color", "roughness")
 COLOR = ("color",)  # input of a Lambert node
-PUBLISHED = ("eon", "eon_fitted")  # EON in the paper: with the exact albedo, or a quartic
+PUBLISHED = ("eon", "eon_fitted")  # the paper's two forms of EON: exact albedo, or a fit
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RendererSpec(DiffuseModelSpec):
-    """A renderer's own node and its documented model.
+    """A built-in node of a renderer, and the model that the renderer documents.
 
-    In `material`, "{color}" and "{roughness}" are placeholders for the inputs, on which only the
-    diffuse lobe may depend.
+    In `material`, "{color}" and "{roughness}" are placeholders for the inputs. Only the diffuse
+    lobe may depend on these inputs.
     """
 
     material: Material = field(default_factory=dict)
-    forms: tuple[str, ...] = ()  # published forms; the nearest one is judged
-    sampled: bool = False  # whether its sampling function can be called
+    forms: tuple[str, ...] = ()  # published forms, of which the nearest form is judged
+    sampled: bool = False  # whether the node's sampling function can be called
 
     @property
     def claimed(self) -> str:
-        """Title of the claimed model, or of its first published form."""
+        """Title of the claimed model, or of the model's first published form."""
         return diffuse_model((*self.forms, self.model)[0]).title
 
     def of_model(self, model: str) -> Self:
@@ -45,7 +45,7 @@ class RendererSpec(DiffuseModelSpec):
         return ""
 
     def made(self, color: Sequence[float], roughness: float) -> Material:
-        """The material with input values for the placeholders."""
+        """The material with input values in place of the placeholders."""
         inputs = {"{color}": tuple(map(float, color)), "{roughness}": float(roughness)}
         return {
             name: inputs.get(value, value) if isinstance(value, str) else value
@@ -68,7 +68,7 @@ def node(
 
 
 def _row(model: str, node: str) -> PbrNode:
-    """The row of a renderer's node. Its variants include only one of the two Burley models."""
+    """The row of a renderer's node. The variants include only one of the two Burley models."""
     name = model if model.startswith("burley") else "burley"
     left_out = {"burley", "burley_lambert"} - {name}
     variants = tuple(each for each in OTHERS if each.name not in left_out)

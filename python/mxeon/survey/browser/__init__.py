@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers from npm, each a page in a headless Chromium that draws one picture per request.
+"""Renderers from npm packages, which draw pictures on pages in a headless Chromium.
 
-The page is an ES module next to this file, which imports the renderer from `node_modules` through a
-route of the browser: nothing is bundled, and nothing leaves the machine.
+The script of a page is an ES module in this folder. The module imports the renderer from the folder
+`node_modules`, which Playwright serves. Nothing is bundled, and nothing leaves the machine.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene, sphere
 from mxeon.survey.specs import Material
 
-MODULES = "MXEON_NODE_MODULES"  # environment variable that names another node_modules
+MODULES = "MXEON_NODE_MODULES"  # environment variable with the path of node_modules
 ORIGIN = "https://renderers.invalid/"  # WebGPU needs a secure origin
 HTML = """<!doctype html><script type="importmap">{imports}</script>
 <script type="module">
@@ -55,7 +55,7 @@ def packages_folder() -> Path:
 
 
 def modules_folder(package: str, host: str) -> Path:
-    """Path of node_modules: MXEON_NODE_MODULES, or the folder next to the lock file."""
+    """Path of node_modules, from MXEON_NODE_MODULES or next to the lock file."""
     folder = Path(os.environ.get(MODULES) or packages_folder() / "node_modules")
     if not (folder / package / "package.json").is_file():
         raise NotRun(
@@ -65,25 +65,25 @@ def modules_folder(package: str, host: str) -> Path:
 
 
 def pixels(answer: webgl.Answer, size: int) -> NDArray[np.float32]:
-    """The pixels of a page's answer, (size, size, 3), row 0 at the top."""
+    """The pixels in the answer of a page, (size, size, 3), row 0 at the top."""
     values = np.frombuffer(base64.b64decode(answer["pixels"]), dtype=np.float32)
     return values.reshape(size, size, 4)[..., :3]
 
 
 def material(backend: str, **more: str) -> Material:
-    """A material with both inputs, drawn by one of the renderer's backends."""
+    """A material with color and roughness, which a backend of the renderer draws."""
     return {"color": "{color}", "roughness": "{roughness}", "backend": backend, **more}
 
 
 class PackageHost(webgl.Chromium, base.Engine):
-    """Materials of an npm package, drawn by a page.
+    """Materials of an npm package, which a page draws.
 
-    The page, an ES module next to the host's, exports `draw(job)`, which returns `pixels` or
-    `failed`. `imports` maps names to paths in node_modules; `assets` are PNG files by address.
+    An ES module in the folder of the host's module exports `draw(job)`, which returns `pixels` or
+    `failed`. `imports` maps names to paths in node_modules. `assets` are PNG files by address.
     """
 
     flags = (*webgl.FLAGS, "--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader")
-    limit = 60.0  # seconds for a picture, including the renderer's start
+    limit = 60.0  # maximum seconds for a picture, including the start of the renderer
     title: ClassVar[str]
     package: ClassVar[str]
     imports: ClassVar[Mapping[str, str]]
@@ -144,7 +144,7 @@ class PackageHost(webgl.Chromium, base.Engine):
 
 
 class ReadingHost(PackageHost, base.Host):
-    """A package that loads MaterialX documents: `mxeon check FILE --host three`.
+    """A package that loads MaterialX documents, as in `mxeon check FILE --host three`.
 
     The package generates its own shaders, so the GLSL from `compile` is not executed. Only distant
     lights are supported, because packages prefilter environments.
@@ -166,7 +166,7 @@ class ReadingHost(PackageHost, base.Host):
         return np.where(sphere(scene.size).mask[..., None], image, np.float32(0.0))
 
     def unread(self, shader: Shader) -> str:
-        """Warnings of the package: inputs that it ignores, unless they have their default value."""
+        """Names of inputs that the package ignores, except inputs with default values, or ""."""
         surface = surface_shader(shader.document, shader.element)
         defaults = {
             each.getName(): each.getValueString() for each in surface.getNodeDef().getActiveInputs()
@@ -181,4 +181,4 @@ class ReadingHost(PackageHost, base.Host):
 
     @abstractmethod
     def read(self, shader: Shader) -> Material:
-        """The job that makes the page draw a shader's material."""
+        """The job with which the page draws a shader's material."""

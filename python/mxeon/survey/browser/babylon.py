@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Babylon.js: PBRMaterial with each diffuse model, and OpenPBRMaterial, on two engines."""
+"""Babylon.js on two engines, with OpenPBRMaterial and with each diffuse model of PBRMaterial."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ PACKAGE, OPEN_PBR = "@babylonjs/core", "open_pbr_surface"
 IMPORTS = {"@babylonjs/core/": "@babylonjs/core/"}
 BACKENDS = {"WebGL2": "webgl", "WebGPU": "webgpu"}
 
-# OpenPBRMaterial loads blue noise for effects that are off here; one gray texel replaces it.
+# OpenPBRMaterial loads an image of blue noise for effects that are off here. This image of one gray
+# texel replaces the blue noise.
 ASSETS = {
     "https://assets.babylonjs.com/core/blue_noise/blue_noise_rgb.png": base64.b64decode(
         "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mNoaGgAAAMEAYF1LgG8AAAAAElFTkSuQmCC"
@@ -42,7 +43,7 @@ class BabylonHost(browser.ReadingHost):
     imports, assets = IMPORTS, ASSETS
 
     def read(self, shader: Shader) -> Material:
-        """The inputs in camel case: OpenPBRMaterial has the inputs of `open_pbr_surface`."""
+        """The inputs of `open_pbr_surface`, with the camel-case names that OpenPBRMaterial has."""
         surface = surface_shader(shader.document, shader.element)
         if surface.getCategory() != OPEN_PBR:
             raise NotRun(f"babylon: it has no {surface.getCategory()}, only {OPEN_PBR}")

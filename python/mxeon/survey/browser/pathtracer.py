@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""three-gpu-pathtracer: diffuse functions of its path tracers, called for pairs of directions."""
+"""Diffuse functions of the package three-gpu-pathtracer, called for pairs of directions."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ PACKAGE = "three-gpu-pathtracer"
 IMPORTS = {**three.IMPORTS, f"{PACKAGE}/": f"{PACKAGE}/"}
 
 LOBE = "WebGLPathTracer, diffuseEval"
-# Length of a half vector whose product with wo is at most 1 after rounding.
+# Length of a half vector for which the dot product with wo is at most 1 after rounding.
 SHORTER = 1.0 - 2.0**-22
-# Materials have a function of WebGPUPathTracer's WGSL, or a half vector's length for the GLSL.
+# The value of "call" is a WGSL function of WebGPUPathTracer. The value of "scale" is the length of
+# the half vector in the GLSL of WebGLPathTracer.
 NODES = (
     node("WebGPUPathTracer, eonBrdf", "eon", {"call": "eon"}, forms=PUBLISHED, sampled=True),
     node("WebGPUPathTracer, fonBrdf", "fon", {"call": "fon"}),
@@ -34,7 +35,7 @@ NODES = (
 )
 
 PI = "#define PI 3.141592653589793"
-# Without refraction (f0 = 0), all light reaches the diffuse lobe.
+# The surface has no refraction (f0 = 0), so all light reaches the diffuse lobe.
 GLSL = """
 vec3 diffuse_value(vec3 wo, vec3 wi, vec3 rho, float roughness, float scale)
 {
@@ -92,14 +93,14 @@ class GpuPathTracerHost(browser.PackageHost):
         """Values of a WGSL function for rows of arguments, (N, 3)."""
         table = np.column_stack([np.asarray(each, np.float32) for each in columns])
         count = len(table)
-        size = math.isqrt(count - 1) + 1  # the answer is a square
+        size = math.isqrt(count - 1) + 1  # the answer is a square picture
         rows = np.zeros((size * size, table.shape[1]), np.float32)
         rows[:count] = table
         answer = self.ask({"call": call, "rows": base64.b64encode(rows.tobytes()).decode()})
         return browser.pixels(answer, size).reshape(-1, 3)[:count]
 
     def _source(self) -> str:
-        """GLSL: the package's diffuse lobe, and a function that calls it."""
+        """GLSL of the package's diffuse lobe, with a function that calls the lobe."""
         folder = self._modules / PACKAGE / "src" / "shader"
         files = ("structs/surface_record_struct", "common/fresnel_functions")
         texts = [_template(folder / f"{file}.glsl.js") for file in files]

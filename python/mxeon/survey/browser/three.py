@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""three.js: MeshPhysicalMaterial in two renderers, and documents that MaterialXLoader loads."""
+"""Host for three.js, with MeshPhysicalMaterial in two renderers and with MaterialXLoader."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ IMPORTS = {
     "three/addons/": "three/examples/jsm/",
 }
 
-# For each category, its inputs for color, roughness, and the weight of the lobes above the diffuse.
+# Names of three inputs by category: color, roughness, and weight of lobes above the diffuse lobe.
 INPUTS = {
     "open_pbr_surface": ("base_color", "base_diffuse_roughness", "specular_weight"),
     "standard_surface": ("base_color", "diffuse_roughness", "specular"),
 }
-# OpenPBR specifies EON; Standard Surface specifies Oren-Nayar.
+# OpenPBR specifies the model EON, and Standard Surface specifies the Oren-Nayar model.
 NODES = (
     node("MeshPhysicalMaterial, WebGLRenderer", "eon", browser.material("webgl"), forms=PUBLISHED),
     node(

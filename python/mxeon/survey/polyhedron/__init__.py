@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers with a Python package, which render their own nodes on a polyhedron.
+"""Renderers with a Python package, which render built-in nodes on a polyhedron.
 
-A renderer runs in its own process. Samples spread over a pixel, so flat facets replace the sphere.
+Each renderer runs in a separate process. The samples of these renderers are spread over a pixel, so
+flat facets replace the sphere.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ MESH = "polyhedron.npz"
 
 
 class PolyhedronHost(Engine):
-    samples: ClassVar[int]  # samples per pixel under an environment; a distant light needs one
+    samples: ClassVar[int]  # number per pixel under an environment; a distant light needs one
     script: ClassVar[Path]  # program of the worker process
     device: ClassVar[str]
     missing: ClassVar[str] = ""  # message if the renderer is not installed
@@ -70,11 +71,11 @@ class PolyhedronHost(Engine):
         output.unlink(missing_ok=True)
         self.worker.ask(output=str(output), **request)
         values: Array = np.load(output, allow_pickle=False)
-        values.flags.writeable = False  # pictures are shared by all callers
+        values.flags.writeable = False  # all callers share the cached picture
         return values
 
     def _interpreter(self) -> Path:
-        """Path of the Python that has the renderer: an environment variable's, or this one."""
+        """Path of a Python with the renderer, from an environment variable or of this process."""
         path = os.environ.get(f"MXEON_{self.name.upper()}_PYTHON")
         python = Path(path or sys.executable)
         if not (python.is_file() and os.access(python, os.X_OK)):

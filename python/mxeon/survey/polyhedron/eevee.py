@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's EEVEE with its own nodes, drawn by OpenGL without a screen."""
+"""Blender's renderer EEVEE with Blender's nodes, on OpenGL without a screen."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from mxeon.survey.cycles_native import MATERIALS
 from mxeon.survey.polyhedron import PolyhedronHost
 from mxeon.survey.specs import COLOR, node
 
-# Blender's manual restricts the roughness of both nodes to Cycles.
+# Both nodes are Lambertian. According to Blender's manual, only Cycles supports the roughness.
 NODES = tuple(node(title, "lambert", material, COLOR) for title, material in MATERIALS.items())
 
 
 class EeveeHost(PolyhedronHost):
     name = "eevee"
     script = Path(process.__file__).with_name("worker.py")
-    samples = 1  # EEVEE has no noise
+    samples = 1  # pictures of EEVEE have no noise
     device = "OpenGL"
     missing = (
         "no Blender: pip install bpy==5.0.1 in an environment of Python 3.11 and name "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mitsuba's own BSDFs in a scalar variant, and the BSDFs of `mxeon.mitsuba`, compiled by LLVM."""
+"""Mitsuba's built-in BSDFs in a scalar variant, and BSDFs of `mxeon.mitsuba` compiled by LLVM."""
 
 from __future__ import annotations
 

@@ -13,10 +13,11 @@ import numpy as np
 Mitsuba: TypeAlias = Any  # an object of Mitsuba, whose types depend on the variant
 JsonObject: TypeAlias = dict[str, Any]
 
-# The BSDFs of `mxeon.mitsuba`.
+# Names of the BSDFs of `mxeon.mitsuba`.
 PLUGINS = ("eon", "fon", "qon")
 
-# Mitsuba's own BSDFs run in a scalar variant. PLUGINS are compiled: scalar Python is too slow.
+# Mitsuba's built-in BSDFs run in a scalar variant. PLUGINS run in a compiled variant, because
+# Python code is too slow in a scalar variant.
 OWN, COMPILED = "scalar_rgb", "llvm_ad_rgb"
 
 mi: Mitsuba = import_module("mitsuba")
@@ -25,7 +26,7 @@ mi.set_log_level(mi.LogLevel.Warn)
 
 
 def bsdf(material: JsonObject, **inputs: object) -> JsonObject:
-    """A material's properties for Mitsuba; `inputs` replace their names in braces."""
+    """Properties of a material for Mitsuba. The values of `inputs` replace names in braces."""
     values = {name: inputs.get(str(value).strip("{}"), value) for name, value in material.items()}
     return {
         name: {"type": "rgb", "value": list(value)} if isinstance(value, (list, tuple)) else value
@@ -34,7 +35,7 @@ def bsdf(material: JsonObject, **inputs: object) -> JsonObject:
 
 
 def evaluate(material: JsonObject, pairs: str) -> Mitsuba:
-    """f cos(theta_i) of a BSDF for the pairs in a file, (N, 3)."""
+    """Values f cos(theta_i) of a BSDF for the pairs of directions in a file, (N, 3)."""
     columns = np.load(pairs)
     if mi.variant() == COMPILED:
         return evaluate_at_once(material, columns)
@@ -50,7 +51,7 @@ def evaluate(material: JsonObject, pairs: str) -> Mitsuba:
 
 
 def evaluate_at_once(material: JsonObject, columns: JsonObject) -> Mitsuba:
-    """`evaluate` for all pairs at once, in a compiled variant. Inputs are texels of an image."""
+    """Values for all pairs at once in a compiled variant. The inputs are texels of images."""
     inputs = {
         name: {
             "type": "bitmap",
@@ -78,7 +79,7 @@ def render(
     environment: float | None,
     samples: int,
 ) -> Mitsuba:
-    """Render the mesh with a BSDF; float32, row 0 at the top."""
+    """Render the mesh with a BSDF to float32 pixels, row 0 at the top."""
     scene = {
         "type": "scene",
         "integrator": integrator(light is not None),
@@ -100,7 +101,7 @@ def render(
 
 
 def integrator(distant: bool) -> JsonObject:
-    """An integrator for one bounce, which samples the light if it is distant, else the BSDF."""
+    """An integrator for one bounce. It samples the light if the light is distant, else the BSDF."""
     samples = {"emitter_samples": int(distant), "bsdf_samples": int(not distant)}
     return {"type": "direct", "hide_emitters": True, **samples}
 
@@ -126,7 +127,7 @@ def sensor(size: int, samples: int) -> JsonObject:
 
 
 def polyhedron(path: str, material: JsonObject) -> Mitsuba:
-    """Load a mesh, without vertex normals, and give it a BSDF."""
+    """Load a mesh without vertex normals, and assign a BSDF to the mesh."""
     data = np.load(path)
     properties = mi.Properties()
     properties["bsdf"] = mi.load_dict(bsdf(material))
