@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of approximate coefficients for shaders, in arithmetic that is the same on every machine."""
+"""Scripts that fit the coefficients of approximations in shaders."""

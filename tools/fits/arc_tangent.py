@@ -5,9 +5,9 @@
 
 The shaders' `oren_nayar_angle` uses the coefficients on [0, tan(pi / 8)] in float32.
 
-The polynomial equals atan(t) / t at the roots of a Chebyshev polynomial in t^2, and is computed
-with 40 digits. The nearest singularity is the branch point t^2 = -1, so each term gains a factor of
-25.
+The polynomial equals atan(t) / t at the roots of a Chebyshev polynomial in t^2. The coefficients
+are computed with 40 digits. The nearest singularity is the branch point t^2 = -1, so each further
+term reduces the error by a factor of 25.
 """
 
 from tools.fits.minimax import mp, roots
@@ -25,7 +25,7 @@ def coefficients(terms, top):
 
 
 def largest_error(series, top, count=2000):
-    """Largest relative error of the polynomial itself, without the roundings of its evaluation."""
+    """Largest relative error of the polynomial in 40 digits, without rounding in float32."""
     points = [top * k / count for k in range(1, count + 1)]
     sums = [mp.fsum(each * t ** (2 * k) for k, each in enumerate(series)) for t in points]
     values = [each * t / mp.atan(t) for each, t in zip(sums, points, strict=True)]

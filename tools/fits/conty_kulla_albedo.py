@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of the directional albedo of the Conty-Kulla sheen, at most 1, for the shaders.
+"""The shaders' fit of min(E, 1), where E is the directional albedo of the Conty-Kulla sheen.
 
     E(mu, r) = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,
     s = sqrt(r),  z = sqrt(mu / (mu + s)),
 
-where N and D are polynomials in z and s. At small roughness r only light near the horizon remains:
-the exponential is sin(theta_h)^(1 / r) at the lowest half vector that light above the horizon
-allows, and the quotient has its limits at mu = 0 and 1. The fit minimizes the largest absolute
-error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses sums, products, quotients and
-square roots: roughness is 4 / k with integer k, so powers become products of roots.
+where N and D are polynomials in z and s. At small roughness r, only light near the horizon remains.
+Then the exponential is sin(theta_h)^(1 / r) of the lowest half vector that light above the horizon
+allows, and the quotient s^2 / (mu + s)^3 behaves like E at mu = 0 and 1. The fit minimizes the
+largest absolute error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses sums, products,
+quotients and square roots. Since roughness is 4 / k with integer k, powers are products of roots.
 
     python -m tools.fits.conty_kulla_albedo
 """
@@ -31,12 +31,12 @@ EIGHTHS = (
     *(4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40, 44, 48, 56, 64, 80, 100, 128),
     *(170, 230, 320, 450, 640, 900, 1300, 2000, 3000, 5000, 8000, 13000, 20000, 40000),
 )
-TOP, LEAST = 1.02, 1e-4  # range of fitted albedos: shaders clamp to 1, smaller ones do not matter
+TOP, LEAST = 1.02, 1e-4  # range of fitted albedos, which shaders clamp to 1
 NODES = 20  # quadrature nodes per quarter turn of the azimuth
 
 
 def albedo(mu, eighths):
-    """E by quadrature at roughness 4 / eighths; its error is below 1e-4 of max(E, 1).
+    """E by quadrature at roughness 4 / eighths, with an error below 1e-4 of max(E, 1).
 
     f cos = (1 + p) sin(theta_h)^(2 p) / (4 pi) mu_i / (mu + mu_i - mu mu_i),  p = 1 / (2 r)
     """
@@ -45,7 +45,7 @@ def albedo(mu, eighths):
     s, s_i = np.sqrt((1.0 - mu) * (1.0 + mu)), np.sqrt((1.0 - mu_i) * (1.0 + mu_i))
     M = mu + mu_i
     total = np.zeros_like(mu)
-    # With x in [0, 1]: tan(phi / 2) = x on one side of a right angle, and 1 / x on the other.
+    # For x in [0, 1], tan(phi / 2) is x on one side of a right angle and 1 / x on the other side.
     for near, far in ((1.0, x * x), (x * x, 1.0)):
         half = near / (near + far)
         flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half
@@ -61,7 +61,7 @@ def albedo(mu, eighths):
 
 
 def variables(mu, roughness):
-    """The tuple (z, s), the factor of N / D without the exponential, and the exponent."""
+    """The tuple (z, s), the factor s^2 / (mu + s)^3, and the exponent of the exponential."""
     s = np.sqrt(roughness)
     factor = roughness / ((mu + s) * (mu + s) * (mu + s))
     exponent = -mu * mu / (roughness * (8.0 - 4.0 * mu * mu))
@@ -74,7 +74,7 @@ def fitted(mu, roughness, coefficients):
 
 
 def points(count=37):
-    """Cosines, roughnesses and albedos of the fit, for albedos between `LEAST` and `TOP`."""
+    """Cosines, roughnesses and albedos for the fit, where albedos are between `LEAST` and `TOP`."""
     ends = np.array(extrema(count), float)
     rows = []
     for eighths in EIGHTHS:
@@ -88,7 +88,7 @@ def points(count=37):
 
 
 def fit():
-    """Coefficients, the numerator's first, rounded as printed."""
+    """Coefficients with the printed digits; those of the numerator come first."""
     mu, roughness, E = points()
     arguments, factor, exponent = variables(mu, roughness)
     factor = factor * np.array([float(mp.exp(mp.mpf(float(x)))) for x in exponent])
@@ -97,7 +97,7 @@ def fit():
 
 if __name__ == "__main__":
     found = fit()
-    mu, roughness, E = points(75)  # a finer grid than the fit's
+    mu, roughness, E = points(75)  # a finer grid than that of the fit
     largest = np.max(np.abs(fitted(mu, roughness, found) - np.minimum(E, 1.0)))
     print(*printed(found))
     print(f"largest absolute error {largest:.3g}")

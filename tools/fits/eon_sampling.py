@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of `mxeon.models.sampling` and of the shaders; prints coefficients and errors.
+"""Prints coefficients for `mxeon.models.sampling` and the shaders, and errors of these fits.
 
     python -m tools.fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine, without further parameters, in the form x
-= p + sum(a_k B_k(p)), where p is the root of the random number that makes x(p) analytic. Values at
-p = 0 and 1 are exact for any coefficients. Newton steps of minimax fits minimize the largest
-relative error of the density. The fits need the exact density, but not its exact inverse
-distribution.
+Two inverse distributions map a random number to a cosine and have no other parameters. Their form
+is x = p + sum(a_k B_k(p)), where p is a root of the random number, chosen so that x(p) is analytic.
+Values at p = 0 and 1 are exact for any coefficients. Newton steps, each a linear minimax fit,
+minimize the largest relative error of the density. The fits need the exact density, but not the
+exact inverse distribution.
 
-ROOT, which only shaders use, fits y = (K / K(pi / 2))^(2/5) for a given cosine, where y is analytic
-in m = 1 - cos. The polynomial replaces an arc tangent, a cancellation and a power.
+ROOT, which only shaders use, are coefficients of a polynomial for y = (K / K(pi / 2))^(2/5) at a
+given cosine, where y is analytic in m = 1 - cos. Without the polynomial, shaders would need an arc
+tangent and a power, and digits would cancel.
 """
 
 from tools.fits.fon_loss import closed_form
@@ -50,7 +51,7 @@ def upper_basis(y):
 
 
 def density_error(p, basis, density, root, coefficients):
-    """Relative error of the density at x(p), and its gradient; the random number is p^root."""
+    """Relative error of the density at x(p), and the gradient of this error."""
     values, slopes = basis(p)
     x, slope = p + mp.fdot(values, coefficients), 1 + mp.fdot(slopes, coefficients)
     step = mp.sqrt(mp.eps)
@@ -74,9 +75,10 @@ def fitted(points, basis, density, root):
 
 
 def root_rows(points):
-    """Rows of the linear fit of y / m by powers of m, divided by y / m.
+    """Rows of the linear fit of y / m by powers of m, where each row is divided by y / m.
 
-    Here y = (K / K(pi / 2))^(2/5) at the cosine 1 - m; cancellation costs at most 14 of 40 digits.
+    Here, y is (K / K(pi / 2))^(2/5) at the cosine 1 - m. Cancellation costs at most 14 of 40
+    digits.
     """
     rows = []
     for m in points:
@@ -91,7 +93,8 @@ def dense_near_1(count):
     return [1 - w**2 for w in roots(count)]
 
 
-# Columns: name, points, basis, density, exponent `root`.
+# Each row has the name, points, basis, density and exponent `root` of a fit. The random number is p
+# to the power `root`.
 ROWS = (
     ("MULTIPLE", dense_near_1, multiple_basis, multiple_density, mp.mpf(3)),
     ("UPPER", roots, upper_basis, upper_density, mp.mpf(5) / 2),

@@ -4,8 +4,8 @@
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
 S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees of P and
-Q. The term with Q vanishes at both ends, so nothing cancels there. P and Q are fitted together to
-the closed form, and minimize the largest relative error of H.
+Q. The term with Q vanishes at mu = 0 and 1, so nothing cancels at these ends. P and Q are fitted
+together to the closed form, and minimize the largest relative error of H.
 
     python -m tools.fits.fon_loss
 """
@@ -21,21 +21,21 @@ DEGREE_P, DEGREE_Q = 4, 3
 DIGITS = 9  # enough to distinguish any two float32 numbers
 COUNT = 200  # points of the fit
 
-# Cosines in float32 at which errors are measured: dense in all decades from 1e-8, and in [0, 1].
+# Float32 cosines at which errors are measured, dense in all decades from 1e-8 and in [0, 1].
 CHECKED = np.unique(
     np.concatenate([np.logspace(-8, 0, 100_000), np.linspace(1e-5, 1, 100_000)]).astype("f4")
 )
 
 
 def closed_form(mu):
-    """H(mu) = c1 - G_F(mu) / pi, [Portsmouth2025], Eq. (13), in 40 digits, mu > 0."""
+    """H(mu) = c1 - G_F(mu) / pi for mu > 0, in 40 digits: [Portsmouth2025], Eq. (13)."""
     S = mp.sqrt((1 - mu) * (1 + mu))
     G = S * (mp.acos(mu) - mu * S) + mp.mpf(2) / 3 * (S * (1 - S**3) / mu - S)
     return mp.mpf(1) / 2 - 2 / (3 * mp.pi) - G / mp.pi
 
 
 def fitted(mu, p, q):
-    """H(mu) by the fit, with the shaders' operations in the precision of `mu`."""
+    """The fit of H(mu), with the operations of the shaders in the precision of `mu`."""
     one = mu.dtype.type(1.0)
     m = one - mu
     S = np.sqrt(m * (one + mu))
@@ -43,7 +43,7 @@ def fitted(mu, p, q):
 
 
 def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
-    """Coefficients with the least largest relative error at COUNT points, dense at both ends."""
+    """Coefficients that minimize the largest relative error at COUNT points, dense at both ends."""
     rows = []
     for mu in extrema(COUNT + 1)[1:]:
         p = mu / closed_form(mu)
@@ -57,7 +57,7 @@ def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
 
 
 def largest_errors(p, q):
-    """Largest relative error of H over `CHECKED` in float64, and in simulated float32."""
+    """Largest relative errors of H over `CHECKED`, in float64 and in simulated float32."""
     exact = formulas.fon_loss_mu(np.float64(CHECKED))
     double = fitted(np.float64(CHECKED), p, q)
     single = fitted(CHECKED, np.float32(p), np.float32(q))

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of F_ss, the cosine-weighted average of a Fresnel reflectance, for the shaders.
+"""The shaders' fits of F_ss, the cosine-weighted average of a Fresnel reflectance.
 
-For a dielectric of index n above 1, with t = 1 / n:
+For a dielectric of index n above 1, the fit uses t = 1 / n:
 
     1 - F_ss = t N / D,
 
-where N and D are polynomials in t. For an index below 1, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). For a
-metal, whose reflectance is 1 at grazing:
+where N and D are polynomials in t. For an index below 1, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). A
+metal reflects everything at grazing, so the fit is a sum over three cosines c_k:
 
     1 - F_ss = sum of w_k (1 - F(c_k)),
 
-with three cosines c_k, and weights w_k that minimize the largest error over metals. Schlick's curve
-needs no fit.
+where the weights w_k minimize the largest error over metals. Schlick's curve needs no fit.
 
     python -m tools.fits.fresnel_average
 """
@@ -36,7 +35,7 @@ NODES = 24  # nodes of the average over the hemisphere
 
 
 def dielectric_average(n):
-    """F_ss of a dielectric for n > 1, [Walsh1926]."""
+    """F_ss of a dielectric for n > 1: [Walsh1926]."""
     n2 = n * n
     n4 = n2 * n2
     return (
@@ -51,7 +50,8 @@ def dielectric_average(n):
 def dielectric_fit():
     """Coefficients of N and D, without D's constant 1, by linear fits of (N - D T) / D.
 
-    T is the exact N / D. Each fit divides by the previous D, and so converges to the minimax fit.
+    T is the exact N / D. Each fit divides by D of the previous fit, so that the fits converge to
+    the minimax fit.
     """
     t, above = roots(COUNT), len(FORM.above)
     T = [(1 - dielectric_average(1 / x)) / x for x in t]
@@ -68,7 +68,7 @@ def dielectric_fit():
 
 
 def dielectric_error(coefficients):
-    """Largest absolute error of F_ss on a finer set of points than the fit's."""
+    """Largest absolute error of F_ss at more points than the fit uses."""
     points = roots(4 * COUNT + 1)
     exact = np.array([dielectric_average(1 / x) for x in points], float)
     t = np.array(points, float)
@@ -76,7 +76,7 @@ def dielectric_error(coefficients):
 
 
 def metals(n, k):
-    """F_ss of metals by quadrature, to within 1e-6, and their reflectances at three cosines."""
+    """F_ss of metals by quadrature, to within 1e-6, and reflectances of the metals at COSINES."""
     n, k = (each.ravel() for each in np.meshgrid(n, k, indexing="ij"))
 
     def at(c):
@@ -112,6 +112,6 @@ if __name__ == "__main__":
     print(f"largest absolute error, dielectrics: {dielectric_error(found):.3g}")
     weights = conductor_fit()
     print("metals", *printed(weights))
-    for least in (0.5, 0.2):  # least extinction of the fit's domain, and a smaller one
+    for least in (0.5, 0.2):  # least extinction of the fit's domain, and a smaller extinction
         error = conductor_error(weights, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
         print(f"largest absolute error, metals of an extinction from {least}: {error:.3g}")

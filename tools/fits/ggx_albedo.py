@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of E_ss, the directional albedo of GGX at unit Fresnel reflectance, for the shaders.
+"""The shaders' fit of E_ss, the directional albedo of GGX at unit Fresnel reflectance.
 
     E_ss(mu, alpha) = 1 - z^2 N / D,  z = sqrt(mu / (mu + alpha)),
 
-where N and D are polynomials in z and alpha. At small alpha E_ss only depends on mu / alpha, and so
-on z. At grazing 1 - E_ss vanishes like mu log(mu), which polynomials in z approximate better than
-those in mu. The fit minimizes the largest absolute error. The quadrature only uses sums, products,
-quotients and square roots of float64, which are the same on every processor.
+where N and D are polynomials in z and alpha. At small alpha, E_ss only depends on mu / alpha, and
+hence on z. At grazing, 1 - E_ss vanishes like mu log(mu), which polynomials in z approximate better
+than polynomials in mu. The fit minimizes the largest absolute error. The quadrature only uses sums,
+products, quotients and square roots of float64, whose results are the same on every processor.
 
     python -m tools.fits.ggx_albedo
 """
@@ -29,7 +29,7 @@ START = (
     *(-1.49084, 5.82249, 1.60299, 0.74937, 1.79916),
     *(0.225562, -0.0983618, 4.00769, 1.57355, 0.538882, -12.0367, -1.69065, -1.00164, 7.53262),
 )
-DEGREE, PANELS = 12, 10  # quadrature nodes per panel; panels, narrowest at the mirror direction
+DEGREE, PANELS = 12, 10  # quadrature nodes per panel, and number of panels
 NEWTON = 6  # Newton steps from the asymptotic root to 40 digits
 LEAST = 1e-4  # smallest alpha and cosine of the fit
 
@@ -51,7 +51,7 @@ def legendre(count):
 
 
 def graded():
-    """Nodes and weights on [0, 1] in panels; each panel is a quarter as wide as the next."""
+    """Nodes and weights of panels on [0, 1]. Each panel is about a quarter as wide as the next."""
     x, w = legendre(DEGREE)
     pairs = list(pairwise([0.0] + [4.0 ** (k - PANELS + 1) for k in range(PANELS)]))
     nodes = np.concatenate([a + (b - a) * x for a, b in pairs])
@@ -61,9 +61,9 @@ def graded():
 def incident(mu, alpha):
     """Terms of the albedo's integrand around the mirror direction, with nodes along the first axis.
 
-    With t = tan((theta_o - theta_i) / 2), D G2 / (4 mu_o) is pre (u / (u - k))^2 over the azimuth,
-    where u - k goes from `low` at the mirror direction's azimuth to `high` at the opposite azimuth.
-    Returns k, `low`, `high` and `pre`.
+    Let t be tan((theta_o - theta_i) / 2). As a function of the azimuth, D G2 / (4 mu_o) is pre (u /
+    (u - k))^2, where u - k rises from `low` at the azimuth of the mirror direction to `high` at the
+    opposite azimuth. Returns k, `low`, `high` and `pre`.
     """
     node, weight = (each.reshape(-1, *(1,) * np.ndim(mu)) for each in graded())
     s = np.sqrt((1.0 - mu) * (1.0 + mu))
@@ -83,7 +83,7 @@ def incident(mu, alpha):
 
 
 def albedo(mu, alpha):
-    """E_ss by quadrature; its error is below 1e-7 for mu and alpha above `LEAST`."""
+    """E_ss by quadrature, with an error below 1e-7 for mu and alpha above `LEAST`."""
     k, low, high, pre = incident(mu, alpha)
     ratio = k / np.sqrt(low * high)
     azimuth = 1.0 + ratio * (2.0 + ratio * 0.5 * (low + high) / np.sqrt(low * high))
@@ -91,7 +91,7 @@ def albedo(mu, alpha):
 
 
 def variables(mu, alpha):
-    """The fit's variables (z, alpha), and its factor z^2."""
+    """The variables (z, alpha) of the fit, and the factor z^2."""
     z2 = mu / (mu + alpha)
     return (np.sqrt(z2), alpha), z2
 
@@ -102,9 +102,9 @@ def fitted(mu, alpha, coefficients):
 
 
 def points(across=61, along=41, root=0.0, least=LEAST):
-    """Cosines and roughnesses, dense where alpha or the variable x below is near 0 or 1.
+    """Cosines and roughnesses, dense where alpha or x is near 0 or 1.
 
-    x is mu / sqrt(alpha^2 + (1 - alpha^2) mu^2). A `root` of 1/2 makes alpha denser near 0.
+    Here, x is mu / sqrt(alpha^2 + (1 - alpha^2) mu^2). A `root` of 1/2 makes alpha denser near 0.
     """
     x, alpha = (np.array(extrema(count), float) for count in (across, along))
     x, alpha = np.meshgrid(np.maximum(x, least), np.maximum(alpha * alpha**root, LEAST))
@@ -113,20 +113,20 @@ def points(across=61, along=41, root=0.0, least=LEAST):
 
 
 def fit():
-    """Coefficients, the numerator's first, rounded as printed."""
+    """Coefficients with the printed digits; those of the numerator come first."""
     mu, alpha = points()
     arguments, z2 = variables(mu, alpha)
     return refined(FORM, arguments, (1.0 - albedo(mu, alpha)) / z2, z2, START)
 
 
 def largest_error(coefficients, across=145, along=97):
-    """Largest absolute error of E_ss on a finer grid than the fit's."""
+    """Largest absolute error of E_ss on a finer grid than that of the fit."""
     mu, alpha = points(across, along)
     return float(np.max(np.abs(fitted(mu, alpha, coefficients) - albedo(mu, alpha))))
 
 
 def peak(mu, alpha, count=400):
-    """Largest pi f cos of perfectly reflecting facets; it occurs in the plane of incidence."""
+    """Largest pi f cos of perfectly reflecting facets, which occurs in the plane of incidence."""
     mu_i = (np.arange(count) + 0.5).reshape(-1, *(1,) * np.ndim(mu)) / count
     s, s_i = (np.sqrt((1.0 - each) * (1.0 + each)) for each in (mu, mu_i))
     alpha2 = alpha * alpha
@@ -139,8 +139,8 @@ def peak(mu, alpha, count=400):
 def value_errors(coefficients, across=145, along=97):
     """Largest error of a compensated value, and the largest factor of F_ss in such a value.
 
-    Error and factor are relative where the value exceeds 1. With v the value without compensation,
-    the error is that of v / E_ss, and the factor is v (1 - E_ss) / E_ss.
+    Error and factor are relative where the value exceeds 1. If v is the value without compensation,
+    the compensated value is v / E_ss, and the factor of F_ss is v (1 - E_ss) / E_ss.
     """
     mu, alpha = points(across, along)
     E, v = albedo(mu, alpha), peak(mu, alpha)

@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Isotropic facets to replace anisotropic ones in the shaders' fits of E_ss and Fresnel averages.
+"""Isotropic facets that replace anisotropic facets in shaders' fits of E_ss and Fresnel averages.
 
-With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughness along and across wo's azimuth is
+With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughnesses along and across the azimuth of wo
+are
 
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2,
 
-and c is the correlation of these slopes, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The lost light
-equals that of isotropic facets with alpha = r at the cosine z r / v, times
+For the correlation c of slopes along and across, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The lost
+light is that of isotropic facets with alpha = r at the cosine z r / v, times
 
     1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
 
 where the coefficients minimize the largest relative error of E_ss. The average of a Fresnel curve
-equals that over isotropic facets with alpha = v k(0.7 + c^2) at the cosine z k(0.35 c^2), where
-k(p) = min((1 + p v) / (1 + p u), 1).
+is that over isotropic facets with alpha = v k(0.7 + c^2) at the cosine z k(0.35 c^2), where k(p) =
+min((1 + p v) / (1 + p u), 1).
 
     python -m tools.fits.ggx_anisotropic
 """
@@ -34,7 +35,7 @@ AZIMUTHS = np.radians((0.0, 5.0, 12.0, 25.0, 45.0, 65.0, 80.0, 90.0))
 
 
 def points(ratios=RATIOS):
-    """Directions (3, N) and alphas (2, N) of a grid; all alphas are at least 1e-3."""
+    """Directions (3, N) and alphas (2, N) of a grid. All alphas are at least 1e-3."""
     a, ratio, mu, phi = (
         each.ravel() for each in np.meshgrid(LARGEST, ratios, COSINES, AZIMUTHS, indexing="ij")
     )
@@ -45,7 +46,7 @@ def points(ratios=RATIOS):
 
 
 def exact(wo, alpha, ior=None, block=64):
-    """E_ss by quadrature; with `ior`, the albedo of a dielectric without compensation."""
+    """E_ss by quadrature or, if `ior` is given, the albedo of a dielectric without compensation."""
     parts = []
     for start in range(0, wo.shape[1], block):
         c, weight = slope_nodes(wo[:, start : start + block], alpha[:, start : start + block])
@@ -100,7 +101,7 @@ def fit(wo, alpha):
 
 
 def largest_error(ratios=RATIOS, coefficients=MISSED):
-    """Largest relative error of E_ss for these ratios of the alphas."""
+    """Largest relative error of E_ss for the given ratios of the alphas."""
     wo, alpha = points(ratios)
     return float(np.max(np.abs(corrected(wo, alpha, coefficients) / exact(wo, alpha) - 1.0)))
 

@@ -2,16 +2,16 @@
 """Fits of the cosine at which a Fresnel curve equals its average over the visible facets of GGX.
 
 The directional albedo of GGX with a Fresnel reflectance F is E_ss F(c) for some cosine c, which
-depends on mu, alpha and slightly on the curve. At alpha = 0, c is mu:
+depends on mu, on alpha, and slightly on the curve. The fit has the exact limit c = mu at alpha = 0:
 
     c = mu + alpha^2 / (mu + alpha) N / D,
 
-where N and D are polynomials in x = mu / (mu + alpha), a root y of alpha, and s, which identifies a
-curve within its kind. The fit is for c, but minimizes the largest error of the albedo E_ss F(c).
-Among Schlick's curves, (1 - c)^q, exponent 5 has twice the weight of other exponents.
+where N and D are polynomials in x = mu / (mu + alpha), in a root y of alpha, and in a number s that
+identifies a curve within its kind. The coefficients minimize the largest error of the albedo E_ss
+F(c). Among Schlick's curves (1 - c)^q, exponent 5 has twice the weight of other exponents.
 
-Hoffman's dip c (1 - c)^6 is not monotone. A third fit makes the dip's average the value of the dip
-at the cosine c of Schlick's curve with exponent 5, plus alpha^2 / (mu + alpha) N / D, where N and D
+Hoffman's dip c (1 - c)^6 is not monotone, so a third fit starts from the value of the dip at the
+cosine c for Schlick's curve of exponent 5. The fit adds alpha^2 / (mu + alpha) N / D, where N and D
 are polynomials in mu and sqrt(alpha).
 
 Arithmetic is restricted as in `ggx_albedo.py`.
@@ -32,7 +32,7 @@ from tools.fits.minimax import Form, mp, numerator, printed
 BLOCK = 20  # number of points integrated at once
 BISECTIONS = 50
 FLAT = 0.01  # weights use at least this slope
-DEGREE, OUTER = 8, 12  # azimuth nodes per panel, and beyond the panels
+DEGREE, OUTER = 8, 12  # nodes of the azimuth in each panel, and beyond the panels
 
 
 def dielectric(c, ior):
@@ -55,7 +55,7 @@ def dip(c):
 
 @dataclass(frozen=True)
 class Curves:
-    """A kind of Fresnel curves, and the fit of c for them."""
+    """A kind of Fresnel curves, and the fit of the cosine c for this kind."""
 
     function: str  # name of the shader function that computes c
     reflectance: Callable  # function of the cosine and a curve's parameter
@@ -130,9 +130,10 @@ def averages(mu, alpha, functions):
 
 
 def azimuths(scale):
-    """Nodes and weights on [0, 1], along axis 1, in panels that end at powers k / 8 of `scale`.
+    """Nodes and weights along axis 1, in panels of [0, 1] that end at `scale` to the power k / 8.
 
-    Nodes beyond the first panel are uniform in the reciprocal, which suits the tail of a peak at 0.
+    Beyond the first panel, the reciprocals of nodes follow Gauss's rule, which suits the tail of a
+    peak at 0.
     """
     x, w = (each[None, :, None] for each in legendre(DEGREE))
     root = np.sqrt(np.sqrt(np.sqrt(scale)))
@@ -148,7 +149,7 @@ def azimuths(scale):
 
 
 def integrals(mu, alpha, functions):
-    """Integrals over the visible facets: of 1, which is E_ss, and of functions of the cosine."""
+    """Integrals over the visible facets of 1, which is E_ss, and of functions of the cosine."""
     k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
     tangent, width = azimuths(np.sqrt(low / high))
     shape = (len(low), OUTER, low.shape[-1])
@@ -165,7 +166,7 @@ def integrals(mu, alpha, functions):
 
 
 def inverse(values, reflectance):
-    """Cosines at which a falling curve takes the given values."""
+    """Cosines at which a decreasing curve has the given values."""
     low, high = np.zeros_like(values), np.ones_like(values)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -175,7 +176,7 @@ def inverse(values, reflectance):
 
 
 def variables(curves, mu, alpha, shape):
-    """The fit's variables (x, y, s), and its factor alpha^2 / (mu + alpha)."""
+    """The variables (x, y, s) of the fit, and the factor alpha^2 / (mu + alpha)."""
     y = alpha
     for _ in range(curves.roots):
         y = np.sqrt(y)
@@ -190,7 +191,7 @@ def cosine(curves, mu, alpha, shape, coefficients):
 def sample(curves, mu, alpha):
     """Variables, values and weights of the fit of c, with every third curve at each point.
 
-    More curves would make the exchange singular: at fixed x and y, N is a cubic in s.
+    More curves would make the minimax fit singular, because N is a cubic in s at fixed x and y.
     """
     functions = curves.functions
     albedo, means = averages(mu, alpha, functions)
@@ -201,7 +202,8 @@ def sample(curves, mu, alpha):
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
         arguments, factor = variables(curves, mu[selected], alpha[selected], shape)
-        # Where the curve is flat, c still needs a weight: otherwise c could drift to steep parts.
+        # A flat curve would have weight 0, but c needs a weight, so that c does not drift to steep
+        # parts.
         weight = np.maximum(count * slope, FLAT) * albedo[selected] * factor
         columns.append((*arguments, (c - mu[selected]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
@@ -209,7 +211,7 @@ def sample(curves, mu, alpha):
 
 
 def fit(curves):
-    """Coefficients, the numerator's first, rounded as printed."""
+    """Coefficients with the printed digits; those of the numerator come first."""
     return numerator(curves.form, *sample(curves, *points()), curves.below)
 
 
@@ -227,7 +229,7 @@ def errors(curves, coefficients, mu, alpha):
 def dip_sample(mu, alpha, schlick_coefficients):
     """Variables, values and weights of the fit of the dip's average.
 
-    Weights omit E_ss: the compensation of a white surface multiplies the albedo by 1 / E_ss.
+    Weights omit E_ss, because the compensation of a white surface divides the albedo by E_ss.
     """
     _, (mean,) = averages(mu, alpha, [dip])
     c = cosine(SCHLICK, mu, alpha, 0.5, schlick_coefficients)
@@ -242,7 +244,7 @@ if __name__ == "__main__":
         largest = errors(curves, found, *points(49, 33))
         for n, error in zip(curves.parameters, largest, strict=True):
             print(f"largest absolute error at {n}: {error:.3g}")
-    # The coefficients for Schlick's curves, which were found last, give the cosine of the dip.
+    # The dip uses the cosine of Schlick's curves, whose coefficients were found last.
     dip_found = numerator(DIP_FORM, *dip_sample(*points(41, 29), found), DIP_BELOW)
     print("ggx_dip", *printed(dip_found))
     arguments, value, weight = dip_sample(*points(49, 33), found)

@@ -1,33 +1,34 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fit of the light that GGX facets transmit into a thinner medium, with an index n below 1.
 
-Facets beyond the critical angle reflect everything, so no single cosine can represent all of them.
-Let tau be the cotangent of the angle between view and facet, and tau_c its critical value,
-tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical angle is
+Facets beyond the critical angle reflect everything, so no single cosine can represent all facets.
+Let tau be the cotangent of the angle between view and facet, and let tau_c be its value at the
+critical angle, so that tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical angle is
 
     S = (1 + v / sqrt(1 + v^2)) / 2,  v = k (tau_m / tau_c - tau_c / tau_m),
 
-and the share of transmitted light is S^p (1 - F), where F is taken at the tau that a part of S
-exceeds. This tau has a closed form by the same distribution: if a share Q exceeds tau,
+and the share of transmitted light is S^p (1 - F). F is the reflectance at the tau that a share Q of
+the facets exceeds, where Q is a part of S. The same distribution determines this tau:
 
     k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),
     2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
-Along the normal, GGX's share 1 / (1 + alpha^2 tau_c^2) is S with k = 1/2. For a smooth surface, S
-is the distribution of GGX's slopes in one direction, with 2 k = mu s / alpha. The fit is, with mu
-the cosine of the view and s its sine,
+Along the normal, the exact share 1 / (1 + alpha^2 tau_c^2) of GGX is S with k = 1/2. For a smooth
+surface, S with 2 k = mu s / alpha is the distribution of GGX's slopes in one direction. If mu and s
+are the cosine and sine of the view, the fit is
 
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
 
-Each of a, b, k_0, p and the part of S is linear, or an exponential of a linear form, in products
-that a greedy search chose from mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s / (s + alpha), n.
+Each of a, b, k_0, p and the part of S is a linear form, or the exponential of a linear form. A
+greedy search chose its terms among products of mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s /
+(s + alpha) and n.
 
-The share of light by reversed paths from outside (`mxeon.models.transmission`) has this form with
-other coefficients and a factor 1 / (1 + r alpha (1 - n^2) / mu): less light passes at grazing,
-where facets reflect it back up.
+The share of light that follows reversed paths from outside (`mxeon.models.transmission`) has the
+same form with other coefficients and a factor 1 / (1 + r alpha (1 - n^2) / mu). The factor accounts
+for light at grazing that facets reflect back up.
 
-The fit minimizes the largest errors of the compensated albedo and of that share. The search runs in
-float64, starts from the shader's coefficients, and need not be repeatable.
+The fit minimizes the largest errors of the compensated albedo and of the share by reversed paths.
+The search runs in float64, starts from the shader's coefficients, and need not be repeatable.
 
     python -m tools.fits.ggx_inside
 """
@@ -44,12 +45,12 @@ from mxeon.shaders.functions import source_file
 SEED, COUNT = 5, 2500  # random views and roughnesses
 LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
-POWERS = (4, 8, 16)  # half the exponents p of successive p-norms, which approach the largest error
+POWERS = (4, 8, 16)  # halves of exponents of successive p-norms, which approach the largest error
 SCALE = 30.0  # scales errors to about 1
 
 
 def points(seed=SEED, count=COUNT):
-    """Random cosines and roughnesses; many near the normal, the critical angles and mu = alpha."""
+    """Random cosines and roughnesses, many near the normal, critical angles or mu = alpha."""
     rng = np.random.default_rng(seed)
     pick, ratio = rng.random((3, count)), rng.random(count)
     alpha = np.where(pick[0] < 0.5, LEAST ** rng.random(count), rng.random(count))
@@ -65,7 +66,7 @@ def view(mu):
 
 
 def albedo(mu, alpha, ior):
-    """Directional albedo without compensation. Index 0 gives E_ss."""
+    """Directional albedo without compensation. For index 0, the albedo is E_ss."""
     roughness = np.stack([alpha, alpha], axis=-1)
     return np.ravel(dielectric_albedo_dir(view(mu), 1.0, roughness, ior, compensate=False))
 
@@ -125,14 +126,14 @@ def sample(mu, alpha):
 
 
 def errors(coefficients, mu, alpha, ess, albedos):
-    """Errors of the compensated albedo by index and view, (I, N)."""
+    """Errors of the compensated albedo, (I, N), by index and view."""
     fitted = np.stack([1.0 - passing(mu, alpha, n, coefficients)[0] for n in INDICES])
     average = np.array([float(fresnel_dielectric_avg(n)) for n in INDICES])[:, np.newaxis]
     return (ess * fitted - albedos) * (1.0 + average * (1.0 - ess) / ess)
 
 
 def fit(mu, alpha, ior, sampled, exact):
-    """Fit the coefficients to `sampled`, from `sample`, and `exact`, shares by reversed paths."""
+    """Fit the coefficients to results of `sample` and to exact shares by reversed paths."""
 
     def powers(coefficients, power):
         share = passing(mu, alpha, ior, coefficients)[1] - exact
@@ -146,7 +147,7 @@ def fit(mu, alpha, ior, sampled, exact):
 
 
 def shipped():
-    """The shader's coefficients, in the order of its text."""
+    """Coefficients in the order of the shader's text."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
     lines = re.search(r"vec2 a = .*?risen =[^;]*", text, re.DOTALL)
     assert lines

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of sums over directions of a uniform environment, for several point sets.
+"""Errors of sums over a uniform environment, for several sets of points.
 
-A lobe's albedo is the mean of F G2 / G1 over directions sampled by visible facets, and compensation
-divides a white lobe's albedo by E_ss. MaterialX samples with a Fibonacci lattice; other sets of low
-discrepancy are permitted. Errors fall like 1 / n, so n times the largest error is printed.
+A lobe's albedo is the mean of F G2 / G1 over directions that are sampled by visible facets.
+Compensation divides a white lobe's albedo by E_ss. MaterialX uses the points of a Fibonacci
+lattice, but other sets of low discrepancy are permitted. Errors fall like 1 / n, so n times the
+largest error is printed.
 
     python -m tools.fits.lattices
 """

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Linear and rational minimax fits in 40 digits: the same on every machine.
+"""Linear and rational minimax fits in 40 digits, whose results are the same on every machine.
 
-With N unknowns, the minimax residual over many rows equals that over some N + 1 of them, called a
-reference, which all attain it. Stiefel's exchange replaces rows of the reference, so its residual
-grows, until no other row exceeds the residual. The exchange is the simplex method on the dual
-linear program.
+For N unknowns, the minimax residual over many rows equals the minimax residual over some N + 1
+rows, called a reference. All rows of the reference attain that residual. Stiefel's exchange
+replaces rows of the reference, which raises the residual of the reference, until no other row
+exceeds this residual. The exchange is the simplex method on the dual linear program.
 
 A rational fit is N / D with D = 1 + ..., where N and D are sums of given monomials. A search in
-float64, which need not be repeatable, finds starting coefficients, or a denominator without zeros.
-From there, linear fits in 40 digits give repeatable coefficients.
+float64, which need not be repeatable, finds starting coefficients or a denominator without zeros.
+Linear fits in 40 digits then compute repeatable coefficients.
 """
 
 import math
@@ -22,20 +22,21 @@ from mxeon.shaders.functions import source_file
 mp = MPContext()
 mp.dps = 40
 
-EXCHANGES = 500  # maximum number of exchanges; the fits of this folder need a tenth
+EXCHANGES = 500  # maximum number of exchanges; fits in this folder need a tenth of them
 DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 resolves
 SCATTER = 2654435769  # 2^32 / golden ratio; its multiples modulo 2^32 are evenly scattered
 STEPS = 2  # Newton steps from coefficients with six digits; a third step changes no printed error
 
 
 def least_largest(rows, right):
-    """Minimax solution x of rows @ x = right, where rows are (M, N) with M > N, and its residual.
+    """Minimax solution x of rows @ x = right and its residual, for rows of shape (M, N) with M > N.
 
-    Any N of the starting rows must be independent. Raises ArithmeticError if it does not converge.
+    Any N of the starting rows must be independent. Raises ArithmeticError if the exchange does not
+    converge.
     """
 
     def signed(i, sign):
-        """Coefficients of the equation sign (row @ x) - level = sign right for x and level."""
+        """Coefficients of x and level in the equation sign (row @ x) - level = sign right."""
         return [sign * each for each in rows[i]] + [-mp.one]
 
     count = len(rows[0])
@@ -64,7 +65,7 @@ def least_largest(rows, right):
 
 
 def roots(count):
-    """Roots of a Chebyshev polynomial on [0, 1]; dense near both ends, which are not included."""
+    """Roots of a Chebyshev polynomial on [0, 1], dense near both ends but without the ends."""
     return [(1 - mp.cos(mp.pi * (2 * k + 1) / (2 * count))) / 2 for k in range(count)]
 
 
@@ -78,13 +79,13 @@ def extrema(count):
 
 @dataclass(frozen=True)
 class Form:
-    """A rational function's monomials; each is a tuple of exponents."""
+    """The monomials of a rational function, each as a tuple of exponents."""
 
     above: tuple  # monomials of the numerator
     below: tuple  # monomials of the denominator, without its constant 1
 
     def value(self, variables, coefficients):
-        """Values at arrays of variables; the numerator's coefficients come first."""
+        """Values at arrays of variables. The coefficients of the numerator come first."""
         monomials, count = (*self.above, *self.below), len(self.above)
         terms = [c * _monomial(variables, m) for c, m in zip(coefficients, monomials, strict=True)]
         return sum(terms[:count]) / (1.0 + sum(terms[count:]))
@@ -95,7 +96,7 @@ def _monomial(point, exponents):
 
 
 def _samples(form, variables, values, weights):
-    """For each point: monomials of numerator and denominator, value and weight, in 40 digits."""
+    """Monomials of numerator and denominator, value and weight of each point, in 40 digits."""
     for columns in zip(*variables, values, weights, strict=True):
         *point, value, weight = map(mp.mpf, columns)
         above, below = (
@@ -105,7 +106,7 @@ def _samples(form, variables, values, weights):
 
 
 def refined(form, variables, values, weights, start):
-    """Minimax coefficients of the weighted error, by Newton steps from a start."""
+    """Coefficients that minimize the largest weighted error, by Newton steps from `start`."""
     samples = list(_samples(form, variables, values, weights))
     found, count = [mp.mpf(c) for c in start], len(form.above)
     for _ in range(STEPS):
@@ -122,7 +123,7 @@ def refined(form, variables, values, weights, start):
 
 
 def numerator(form, variables, values, weights, below):
-    """Minimax coefficients of the numerator for a given denominator, then the denominator's."""
+    """Minimax coefficients of the numerator for the denominator `below`, followed by `below`."""
     rows, right = [], []
     for above, monomials, value, weight in _samples(form, variables, values, weights):
         factor = weight / (1 + mp.fdot(monomials, below))
@@ -135,7 +136,7 @@ def numerator(form, variables, values, weights, below):
 
 
 def printed(coefficients):
-    """Coefficients as texts with all digits of the shader."""
+    """Coefficients as texts with as many digits as in shaders."""
     return [f"{x:.{DIGITS}g}" for x in coefficients]
 
 
@@ -149,7 +150,7 @@ def defines(form, coefficients, prefix):
 
 
 def shipped(stem, function):
-    """Coefficients of a fit in a GLSL function, the numerator's first, in the order of the form."""
+    """Coefficients of a fit in a GLSL function, in the order of the form and with N first."""
     text = source_file("glsl", stem).read_text(encoding="utf-8")
     body = text.partition(f"{function}(")[2].partition("\n}")[0]
     parts = re.findall(r"float ([ND])\d? = (.*?);", body, re.DOTALL)

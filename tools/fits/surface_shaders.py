@@ -3,10 +3,10 @@
 
     python -m tools.fits.surface_shaders
 
-The layer equation uses each lobe's albedo by quadrature; eonlib uses a fit. The script evaluates
-surfaces with quadratures and with fits, in float64, for pairs and materials drawn as in the checks,
-but with other seeds. It prints the largest errors of values and albedos due to all fits together,
-and of their means over a set.
+The layer equation needs the albedo of each lobe. The reference computes albedos by quadrature,
+eonlib by fits. The script evaluates surfaces in both ways in float64, for pairs of directions and
+materials that are drawn as in the checks, but with other seeds. It prints the largest errors due to
+all fits together, of values and albedos and of their means over a set.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -63,7 +63,7 @@ def conductor_average(ior, extinction):
 
 
 def lobe_albedo(points, exact, node, wo, inputs):
-    """Albedo of a lobe: the shader's fit if the lobe can be a top layer, otherwise exact."""
+    """Albedo of a lobe, by the shader's fit if the lobe can be a top layer, otherwise exact."""
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
         return EXACT(points, exact, node, wo, inputs)
@@ -126,7 +126,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Errors in a random set by name: of values and albedos, the largest and that of the mean."""
+    """Largest errors of values and albedos in a random set, and errors of their means, by name."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of `genglsl/lib/thin_film.glsl` against all orders and exact averages.
+"""Errors of `genglsl/lib/thin_film.glsl`, compared with all orders and exact averages.
 
     python -m tools.fits.thin_film
 
-The shader sums only the orders of interference that matter, and averages over the hemisphere and
-over visible facets by three cosines each. Each cosine stands for a range, within which fringes
-partly cancel. The script prints the largest errors for films of up to 1000 nm on each kind of
-substrate and cosines from 0.1.
+The shader sums only the orders of interference that matter. Averages over the hemisphere and over
+visible facets are sums over three cosines. Each cosine stands for a range of cosines, within which
+fringes partly cancel. The script prints the largest errors for cosines from 0.1 and films of up to
+1000 nm on each kind of substrate.
 
-A check measures the root mean square error of a set of films. Its tolerance is the largest error of
-other sets that are drawn in the same way, at most a third of the largest error of a single film. So
-the check detects a wrong digit, which affects all films, even if its effect is below that error.
+A check measures the root mean square error of a set of films. The tolerance of the check is the
+largest such error of other sets that are drawn in the same way, at most a third of the largest
+error of a single film. So the check detects a wrong digit, which affects all films, even if the
+effect is below the largest error of a single film.
 """
 
 import numpy as np
@@ -31,8 +32,9 @@ VISIBLE = FILMS | {"index": (LEAST_FILM, 2.5)}
 CLEAR = dict(alpha=SHARP.alpha, mu=SHARP.mu, thickness=SHARP.thickness, index=(LEAST_OIL, 2.5))
 DARK = 1e-3  # errors of smaller reflectances are relative to DARK
 STEP = 1e-6  # relative change of the thickness for difference quotients
-# Values of the shader, from `thin_film_nodes.py`. NODES: cosines, weights and widths of the nodes
-# for F_ss. FACETS: coefficients of the polynomials in `facets`, for the nodes of visible facets.
+# Values of the shader, fitted by `thin_film_nodes.py`. NODES holds cosines, weights and widths of
+# the nodes for F_ss. FACETS holds coefficients of the polynomials in `facets`, for the nodes of
+# visible facets.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),
@@ -44,21 +46,21 @@ FACETS = (
     (0.32298, 3.3428, -4.255, 0.51298, 3.6133, -7.43, 3.3391, -2.597, 3.5172, -0.34239),
     (0.14542, 0.030955, -0.22576, -0.22374, 1.0328, -1.4779, 0.16285, -1.7185, 2.1385, 0.018052),
 )  # fmt: skip
-# Orders are summed while the square of the next one exceeds VALUE_ORDER times the squared mean
-# reflectances of all channels and, for a node of a rule, WIDTH_ORDER times the squared width. Each
-# square counts as at most ORDER_RATIO of the last.
+# Orders are summed while the square of the next order exceeds VALUE_ORDER times the squared mean
+# reflectances of all channels, and WIDTH_ORDER times the squared width of a node. Each square is
+# assumed to be at most ORDER_RATIO times the previous square.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest spectral sensitivity
 LEAST_PATH = 1e-21  # least path difference in m
 LEAST_LOSS = 1e-12  # least share of escaping light
 # Parameters of the search for the largest error.
 SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # seed, films per step, steps of evolution
-WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films; sizes of steps from them
+WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films; sizes of steps from these films
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
-COLORED = 17  # NUMBERS, and seven for color82, color90 and the exponent of Schlick's curve
+COLORED = 17  # NUMBERS plus seven for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
 MOVED = 0.3  # share of the COLORED numbers that change in a step
-LEAST = 1e-3  # least number, except for roughness, cosine and extinction: 0 reflects nothing
+LEAST = 1e-3  # least number, since 0 reflects nothing; not for roughness, cosine, extinction
 # The worst films of longer searches, which random starts miss: a metal with total reflection in a
 # film of 1000 nm, and glass at grazing below a film of 1000 nm.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
@@ -71,14 +73,15 @@ WHITE = {"color82": 1.0, "color90": 1.0}
 
 
 def shader_curve(category, material, mu, width=0.0):
-    """`thin_film_fresnel`: mean of a film's curve over cosines around mu with deviation `width`."""
+    """Mean of a film's curve over cosines around mu with deviation `width`, as in the shader."""
     # Evaluate both interfaces at each cosine.
     films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     mu, thickness, n = np.broadcast_arrays(mu, *films)
     opd = film.path_difference(mu, thickness, n)
     spread = (2.0 * film.METERS * thickness) ** 2 * width * mu / np.maximum(opd, LEAST_PATH)
     interfaces = SUBSTRATES[category](mu, n, TEXT, **substrate(material))
-    # `means` are reflectances averaged over phases; `weights` and `sizes` give orders' amplitudes.
+    # `means` are reflectances averaged over phases. `weights` and `sizes` determine the amplitudes
+    # of orders.
     R, S = (
         np.stack(each)
         for each in zip(*(np.broadcast_arrays(r**2, R23) for r, _, R23 in interfaces), strict=True)
@@ -104,7 +107,7 @@ def substrate(material):
 def counted_orders(z, opd, spread, count):
     """Sum of the first `count` orders by tristimulus, shape (3, ...).
 
-    `spread` is the standard deviation of the path differences in m; it damps the fringes.
+    `spread`, the standard deviation of the path differences in m, damps the fringes.
     """
     total = np.zeros((3, *np.broadcast_shapes(z.shape, opd.shape)))
     for k, v, mu, var in film.GAUSSIANS:
@@ -124,7 +127,7 @@ def decay(mu, var, opd, spread):
 
 
 def order_count(weights, sizes, opd, spread, least):
-    """Number of orders that the shader sums; at least one.
+    """Number of orders that the shader sums, at least 1.
 
     s-polarized light has the largest reflectances, p-polarized light the largest transmittances.
     """
@@ -152,7 +155,7 @@ def curve_errors(category, material, _, mu):
 
 
 def slopes(category, material, _, mu):
-    """Derivatives of a curve by log(thickness), to scale roundings of path differences."""
+    """Derivatives of a curve by log(thickness), which scale rounding errors of path differences."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -231,7 +234,8 @@ def visible_average(category, material, alpha, mu):
 def visible_mean(category, material, alpha, mu, coefficients=FACETS):
     """`visible_average` by the shader's three cosines, optionally with other coefficients.
 
-    The cosines are Gauss nodes for a semicircular density: few facets are at the ends of the range.
+    The cosines are Gauss nodes for a semicircular density, because few facets are at the ends of
+    the range.
     """
     mean, reach, bend = facets(mu, alpha, coefficients)
     total = 0.0
@@ -250,7 +254,7 @@ MIRRORS = {
 
 
 def facets(mu, alpha, coefficients):
-    """Mean of the cosines between visible facets and view; the nodes' reach and bend around it."""
+    """Mean cosine between visible facets and view, and half width and bend of the nodes."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
     polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
     mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))
@@ -264,13 +268,14 @@ def monomials(mu, alpha):
 
 
 def smooth_errors(category, material, _, mu):
-    """Errors due to F_ss of a smooth lobe's value F (1 + F_ss (1 - E_ss) / E_ss)."""
+    """Errors of a smooth lobe's value F (1 + F_ss (1 - E_ss) / E_ss) that are due to F_ss."""
     E_ss = ggx_albedo_dir(mu, SMOOTH[0])
     F = film_curve(category).at(mu, **material).max(axis=0)
     return average_errors(category, material) * F * (1.0 - E_ss) / E_ss
 
 
-# Largest errors to measure, by name: function, ranges of films, and numbers that describe a film.
+# Largest errors to measure, by name. Each row has the function, the ranges of films, and how many
+# numbers describe a film.
 MEASURED = {
     "orders": (orders_errors, FILMS, COLORED),
     "orders of curves": (curve_errors, CLEAR, COLORED),
@@ -284,7 +289,7 @@ MEASURED = {
     "albedo from an index on": (albedo_errors, VISIBLE),
     "albedo in a picture": (seen_errors, VISIBLE),
 }
-# Root mean square errors of sets of films to measure, by name: function, and set.
+# Root mean square errors to measure, by name. Each row has the function and the set of films.
 SETS = {
     "all orders": (curve_errors, microfacets.ORDERED),
     "F_ss": (average_errors, microfacets.FRINGED),
@@ -298,7 +303,7 @@ SETS = {
 
 
 def substrates(unit):
-    """Inputs of the three nodes by category; `unit` has numbers in [0, 1], (6, N) or (13, N)."""
+    """Inputs of the three nodes by category, from numbers in [0, 1] of shape (6, N) or (13, N)."""
     count = unit.shape[1]
     edges = {name: np.full((3, count), value) for name, value in WHITE.items()}
     edges["exponent"] = np.full(count, 5.0)
@@ -323,9 +328,9 @@ def filmed(category, ranges, unit):
 def largest(errors, ranges, category, numbers=NUMBERS):
     """Search for the largest error of films within ranges.
 
-    The search takes decreasing steps from the worst random films and a known one, then evolves the
-    worst of all. With COLORED numbers per film, more films take part, and a step changes only some
-    numbers.
+    The search takes decreasing steps from the worst of random films and a known film, then evolves
+    the worst of all films. If COLORED numbers describe a film, more films take part, and a step
+    changes only some numbers.
     """
     rng = np.random.default_rng(SEED)
     many = numbers > NUMBERS
@@ -357,7 +362,7 @@ def largest(errors, ranges, category, numbers=NUMBERS):
 
 
 def films(spec, ranges, seed):
-    """Category, material, roughness and cosine of the films that a check draws with this seed."""
+    """Category, material, roughness and cosine of the films that a check draws with `seed`."""
     DRAWN.set(seed)
     batch = microfacets.film_views(spec, ranges)
     material = {
@@ -369,7 +374,7 @@ def films(spec, ranges, seed):
 
 
 def largest_mean(errors, ranges, sets=64):
-    """Largest root mean square error of a set of films, over many sets, by category."""
+    """Largest root mean square error over many sets of films, by category."""
     return {
         spec.node: max(
             float(np.sqrt(np.mean(errors(*films(spec, ranges, seed)) ** 2)))

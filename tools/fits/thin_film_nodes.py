@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits the nodes with which `genglsl/lib/microfacet_film.glsl` averages a film.
 
-It uses random films of up to 1000 nm on each kind of substrate, not those of the checks. Nodes for
-F_ss minimize the mean fourth power of the errors, which emphasizes the largest. Nodes for visible
-facets minimize the mean square error.
+The script uses random films of up to 1000 nm on each kind of substrate, not the films of the
+checks. Nodes for F_ss minimize the mean fourth power of the errors, which emphasizes the largest
+errors. Nodes for visible facets minimize the mean square error.
 
     python -m tools.fits.thin_film_nodes
 """
@@ -21,13 +21,13 @@ START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, wei
 FACETS = 384  # number of films for the fit of the visible facets
 GRID = 16  # views and roughnesses along each side of the grid of moments
 TIE = 2e-2  # weight of the moments, relative to an error of a film
-BEND = 0.33  # b that gives nodes a t + b (t^2 - 1) of a semicircle a skewness of 1
+BEND = 0.33  # b for which nodes a t + b (t^2 - 1) of a semicircle have skewness 1
 NEAR = 1e-5  # change of a coefficient for difference quotients
 SCALE = 1e3  # scales squared errors to about 1
 
 
 def random_films(count, ranges=fit.FILMS, seed=SEED):
-    """For each category: its name, and materials, roughnesses and views of random films."""
+    """Each category with the materials, roughnesses and views of random films."""
     rng = np.random.default_rng(seed)
     for category in fit.MIRRORS:
         unit = rng.random((fit.NUMBERS, count))
@@ -59,7 +59,7 @@ def hemisphere():
 
 
 def facets():
-    """Coefficients for visible facets by one Gauss-Newton step from those that match moments."""
+    """Coefficients for visible facets, one Gauss-Newton step from those that match moments."""
     films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
     start = moments_fit()
 
@@ -69,7 +69,7 @@ def facets():
 
     first = errors(start)
     slopes = [(errors(start + NEAR * axis) - first) / NEAR for axis in np.eye(len(start))]
-    # Keep coefficients near the start if the films do not determine them.
+    # Coefficients that the films do not determine stay near the start.
     rows = TIE * moment_rows(*grid())
     matrix = np.concatenate([np.stack(slopes, 1), rows])
     change = np.linalg.lstsq(matrix, np.append(-first, np.zeros(len(rows))), rcond=None)[0]
@@ -116,7 +116,8 @@ def facet_moments(mu, alpha):
 def sampled_facets(mu, alpha):
     """Cosines between 16 visible facets and the view, and the facets' weights.
 
-    Facets below `lowest` are excluded: a view along the normal sees none of their light.
+    Facets below `lowest` are excluded, because they reflect no light towards a view along the
+    normal.
     """
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     x, w = np.polynomial.legendre.leggauss(4)

@@ -2,11 +2,12 @@
 """Compares models of EON below an interface with random walks: python -m tools.fits.varnish_walk.
 
 `dielectric_over_eon` is a `layer`: EON receives the light that the dielectric does not reflect, and
-returns it without loss. `varnished` has closed forms for exits and internal reflections. The random
-walks here go between EON and GGX facets, and from facet to facet as in [Heitz2016], so the
-interface loses no light. For each rho, the script prints the ratios of both models' albedos to the
-walk's, the largest error of `varnished`, and its ratios for the light that EON returns into each of
-twelve bins of the hemisphere.
+all light from EON leaves. `varnished` has closed forms for light that leaves and for internal
+reflections. The random walks in this file go between EON and GGX facets, and from facet to facet as
+in [Heitz2016], so the interface loses no light. For each rho, the script prints the ratios of both
+models' albedos to the albedo of the walk and the largest error of `varnished`. It also prints the
+ratios of `varnished` to the walk for the light that EON returns into each of twelve bins of the
+hemisphere.
 """
 
 from itertools import product
@@ -26,12 +27,14 @@ ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def interface(w, alpha, ior, rng):
-    """Directions, z >= 0, of light from w after the facets, and whether light leaves below them."""
+    """Directions, z >= 0, in which light from w leaves the facets, and whether it leaves below."""
     out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
-    # State of each path: index, direction, share of the facets' heights below the path, and side.
+    # State of each path: index, direction, share of the facets' heights below the path, and whether
+    # the path is below the facets.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:
-        # The distance to the next facet depends on Lambda, negative downwards, [Heitz2016].
+        # The distance to the next facet depends on Lambda, which is negative downwards:
+        # [Heitz2016].
         tangent2 = (1.0 - d[:, 2] ** 2) / np.maximum(d[:, 2] ** 2, 1e-12)
         root = np.sqrt(1.0 + alpha**2 * tangent2)
         Lambda = np.maximum(0.5 * (np.where(d[:, 2] > 0.0, root, -root) - 1.0), -1e9)
@@ -104,7 +107,7 @@ def model_bins(mu, *inputs):
 
 
 def rows(paths=PATHS):
-    """For each case, albedos by layer, varnished and walk, (3, 5), and ratios of bins, (12, 4)."""
+    """For each case: albedos of layer, varnished and walk, (3, 5), and ratios of bins, (12, 4)."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
         total, out = walk(mu, *inputs, paths)
