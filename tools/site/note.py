@@ -73,7 +73,7 @@ LOSSES = {
 
 
 def loss_errors(mu):
-    """Errors of 1 - E by the name of the formula, and the exact 1 - E."""
+    """Errors of 1 - E in each formula, by name, and the exact 1 - E."""
     exact = fon_loss(np.float64(mu)) / (1.0 + C1)
     return {name: np.float64(each(mu)) - exact for name, each in LOSSES.items()}, exact
 

@@ -129,10 +129,10 @@ def replacing(path: AnyPath) -> Iterator[Path]:
         try:
             yield temporary
             with temporary.open("r+b") as file:  # Windows can flush only writable files
-                os.fsync(file.fileno())  # the first report of a full disk on some file systems
+                os.fsync(file.fileno())  # some file systems report a full disk only in fsync
             os.replace(temporary, path)
         finally:
-            with suppress(OSError):  # an earlier error says more
+            with suppress(OSError):  # the first error is reported
                 temporary.unlink(missing_ok=True)
 
 

@@ -62,7 +62,7 @@ def read_strictly(converter: cattrs.Converter, value: object, kind: type[T]) -> 
     except UNREADABLE as error:
         first = cattrs.transform_error(error, format_exception=reason)[0]
         raise InputError(first) from None
-    if converter.unstructure(record) != value:  # such as a text read as a list
+    if converter.unstructure(record) != value:  # example: a text read as a list
         raise InputError("it must have the structure that mxeon writes")
     return record
 

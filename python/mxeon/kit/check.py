@@ -42,7 +42,7 @@ LEVELS = 255  # largest eight-bit value
 ROUNDED = LEVELS * 2.0**-12  # largest rounding of a half float below 1, in eight-bit steps
 FLOATS = ("half", "float", "double")
 # A smoothly shaded picture has about as many distinct values as pixels. After rounding to eight
-# bits, the number of distinct values is less than a quarter of that.
+# bits, less than a quarter as many values as pixels are distinct.
 DISTINCT = 4
 
 

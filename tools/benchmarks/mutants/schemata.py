@@ -264,7 +264,7 @@ Subject = tuple[str, bool, str, Checks]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """The check and subject that detect a mutant, SURVIVED or UNWRITTEN, by name of the mutant."""
+    """Results by mutant: the check and subject that detect the mutant, SURVIVED or UNWRITTEN."""
     twins = [each for each in mutants if each.file in OSL_TWINS]
     glsl = [each for each in mutants if each.file.startswith("genglsl/")]
     numbered = dict(enumerate((m for m in glsl if not m.file.startswith(NOT_CHECKED)), 1))

@@ -23,8 +23,9 @@ from mxeon.models.microfacet.fresnel import fresnel_conductor, fresnel_dielectri
 from mxeon.models.nodes.node import BLACK, WHITE, Inputs, PbrNode, Scattering, Variant, white
 from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 
-# Names of deviations that are permitted, because the specification does not define the form of the
-# energy compensation and, since July 2026, notes MaterialX's masking of anisotropic facets.
+# Names of permitted deviations. The specification does not define the form of the energy
+# compensation. Since July 2026, an implementation note mentions MaterialX's masking of anisotropic
+# facets.
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
 ] + ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
@@ -235,7 +236,7 @@ def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Arra
 
 
 def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
-    """Thin-film models of shaders, with each energy compensation and with MaterialX's masking."""
+    """Variants with the thin-film models of shaders and several forms of energy compensation."""
     variants: list[Variant[Scattering]] = [
         Variant("no film", lambda wo, wi, inputs: row.value(wo, wi, _bare(inputs))),
         Variant(

@@ -145,8 +145,9 @@ class PbrNode(Node[Scattering]):
     average: Callable[[Inputs], Array] | None = None
 
 
-# Inputs for colors of a layer that absorb light, by "Vertical-Layering Transmittance" in
-# [MaterialX2026] of August 2026. In earlier specifications, the removed light reaches the base.
+# Inputs whose colors absorb light in a layer, by "Vertical-Layering Transmittance" in
+# [MaterialX2026] of August 2026. In earlier specifications, the light that these colors remove
+# reaches the base.
 ABSORBING = ("color", "tint")
 COLORED = "the color in the light that passes, as in texts before August 2026"
 
