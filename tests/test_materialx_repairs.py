@@ -80,7 +80,7 @@ def failing(tmp_path_factory):
     ]
 
 
-# Libraries for the rows of pages that need a library other than stock MaterialX.
+# Libraries for checks that the pages list, by check and host.
 LIBRARIES = {
     (*row, ISSUES[page].host): ISSUES[page].library for page in PATCHES for row in ISSUES[page].rows
 }

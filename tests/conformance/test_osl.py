@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL closures of eonlib's nodes pass their checks, and wrong variants of the OSL fail them."""
+"""OSL closures of eonlib's nodes pass their checks, and wrong OSL fails the intended check."""
 
 from copy import copy
 from dataclasses import replace

@@ -188,7 +188,7 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ()),
         ("genglsl/burley_diffuse_bsdf.glsl", "N = mx_forward_facing_normal(N, wo);", "N = closureData.N;", "frame",
          ("direct", "input_ignored", "normal")),
-        # On these graphics drivers, NaN becomes 0 even without the clamp.
+        # The graphics drivers under test turn NaN into 0, even without the clamp.
         ("genglsl/burley_diffuse_bsdf.glsl", "clamp(dot(wi, eonlib_half_vector(wo, wi, N)), 0.0, 1.0)",
          "dot(wi, normalize(wi + wo))", "finite", ("not finite", "opposite")),
         ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",

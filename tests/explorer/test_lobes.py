@@ -14,7 +14,7 @@ from tests.explorer.browser import DRAWN, opened, show, until
 # gl host.
 STOCK = {
     "shader": "wrong",
-    "lobe/sheen_zeltner": "correct",  # its errors appear only in a layer or with a tilted normal
+    "lobe/sheen_zeltner": "correct",  # the errors appear only in a layer or with a tilted normal
     "lobe/schlick": "differs",
     "lobe/film_dielectric": "differs",
     "lobe/hair": "wrong",

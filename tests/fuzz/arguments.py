@@ -150,7 +150,7 @@ def _part(values, argument):
 
 
 def answer(function, values):
-    """Call a function, and return ACCEPTED or REFUSED, and the fault or ""."""
+    """Call a function; return ACCEPTED or REFUSED, and the fault or ""."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     try:

@@ -35,8 +35,8 @@ MARK = re.compile(r"mark\d{5}x|77\d{5}")
 QUOTED = re.compile(r'"[^"]*"')
 
 
-# Names of attributes by which elements refer to each other, and of values. Each name is tested
-# separately.
+# Attributes by which elements refer to each other, and the attribute `value`. Attributes of
+# different names are tested separately.
 APART = NAMES | {"name", "value"}
 
 

@@ -55,7 +55,10 @@ def _outputs(arguments):
 
 
 def _prepared(root, tried):
-    """Create and return a case's working folder, with a link that leads out, and files outside."""
+    """Create and return a case's working folder.
+
+    A link in the folder leads outside, and the files AROUND lie outside.
+    """
     home = root / "documents"
     shutil.copytree(examples_folder() / "textures", home / "textures")
     (home / "link").symlink_to(root)

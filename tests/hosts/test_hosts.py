@@ -86,7 +86,7 @@ def test_what_the_compiler_refuses_is_a_shader_error_and_the_host_works_on(host)
     good = of_eon(host)
     wrong = good.stages["pixel"].replace("eon_brdf_mu", "no_such_function", 1)
     bad = replace(good, stages={**good.stages, "pixel": wrong})
-    # the error message of naga contains no line number
+    # The error message of naga contains no line number.
     place = "(.|\n)*" if host.name == "wgsl" else ", in oren_nayar_lobe: '.*"
     for flag in (0.25, 0.5):
         words = f"^{host.name}: the shader does not compile{place}eon_brdf_mu"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Materials with lobes below the surface are recognized, and rendering them causes a warning."""
+"""Materials with lobes below the surface are recognized. Rendering such a material warns."""
 
 from dataclasses import replace
 

@@ -22,7 +22,7 @@ USE = '<own name="own" type="color3"/>' + connected(color='nodename="own"')
 BODY = "void own(out vec3 result) { result = vec3(0.123); }\n"
 OTHER = "float other(float x) { return 2.0 * x; }\n"
 SECRET = "// canary\n"
-# MaterialX warns about documents with their own code
+# MaterialX warns about documents that contain their own code.
 pytestmark = pytest.mark.filterwarnings("ignore")
 
 

@@ -50,13 +50,14 @@ QUARTIC_EON_ALBEDO = 0.213 * QUARTIC_LOSS
 
 # Difference between eon_brdf_approx and Listing 1, in units of 1 / pi. Listing 1 clamps each 1 - E
 # to at least 1e-7. One clamp changes the result by c1 / (c1 - c2) = 1.34 times 1e-7. Two clamps
-# change it by 1e-14 divided by 1 - <E> > 1.6e-6.
+# change the result by 1e-14 divided by 1 - <E> > 1.6e-6.
 LISTING_EPSILON = 1.34 * 1e-7 + 1e-14 / 1.6e-6
 
 # --- fits --------------------------------------------------------------------------------------
 
 # Largest relative errors of fits with their published digits, as stated next to the coefficients
-# and rounded up. EON_DENSITY belongs to exact samples, for the worse of the two fits.
+# and rounded up. EON_DENSITY is the error of the density of exact samples, which use two fits, and
+# holds for the worse fit.
 FIT_LOSS = 2.7e-7
 FIT_LOSS_32 = 5.4e-7
 FIT_ROOT = 1.8e-7
@@ -110,9 +111,9 @@ TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 
 # Relative difference between the density returned with a sample and the density computed from the
-# sample's direction. Both divide the third or fourth power of a length or of its square (6
-# roundings each) by det M, a difference of terms <= 1.6 that is at least 0.91. Near the boundary of
-# CLTC, the density is a difference with an absolute error of DIRECTION.
+# sample's direction. Both computations divide the third or fourth power of a length or of its
+# square (6 roundings each) by det M, a difference of terms <= 1.6 that is at least 0.91. Near the
+# boundary of CLTC, the density is a difference with an absolute error of DIRECTION.
 SAMPLE_PDF = 2 * (4 * (6 + 6) + 6 * 1.8 + 20) * ROUNDING
 
 # Absolute error of a density if its sample has the error TURNED_DIRECTION. At mu_o = 0.3, |s / t|
@@ -166,7 +167,7 @@ PRINTED = 0.05 + 0.05 + 0.01
 FIT_GGX = 4.92e-4 + 1e-6
 FIT_CONTY_KULLA = 1.51e-3 + 1e-5
 
-# Error of the fits' quadrature. Its panels shrink to 4^-9 of the integrand's width.
+# Error of the quadrature for the fits. The panels shrink to 4^-9 of the integrand's width.
 FIT_QUADRATURE = 1e-7
 
 # Relative error of the Fresnel reflectance of a dielectric, and of its average, for an index of
@@ -219,7 +220,7 @@ MITSUBA_COAT = 24 * ROUNDING_32
 # plus 3 roundings. The measured error is 1.5e-7.
 MITSUBA_DENSITY = 2e-7 + 3 * ROUNDING_32
 
-# Error of the curves of a dielectric over EON, as stated in their docstring.
+# Documented error of the curves of a dielectric over EON.
 COAT = 2e-7
 # Error of the integral of a dielectric over EON by 256 x 256 nodes at alpha = 0.5. The error is
 # largest in the specular lobe at mu = 0.1.
