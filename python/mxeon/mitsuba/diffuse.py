@@ -178,7 +178,7 @@ class QonPlugin(RoughDiffusePlugin):
 
 
 class EonPlugin(RoughDiffusePlugin):
-    """EON with samples whose density is BRDF times cosine, as in `mxeon.models.sampling`."""
+    """EON with samples in exact proportion to BRDF times cosine, as in `mxeon.models.sampling`."""
 
     brdf = staticmethod(formulas.eon_brdf_mu)
 
