@@ -254,7 +254,7 @@ def _materials(run: Run) -> Iterator[Line]:
 
 
 def _appearance(run: Run, document: str, results: Sequence[Result]) -> str:
-    """Text on the appearance of a material on one host, with each library."""
+    """Text on how a material looks on one host with each library."""
     looks = [(_look(run, document, each), each.library) for each in results]
     rendered = {each.library for each in results}
     for library in _unique([*(each.library for each in run.results), *run.compared]):
@@ -380,7 +380,7 @@ def model_of(title: str) -> str:
 def _not_run(run: Run, full: bool, pictures: bool) -> Iterator[Line]:
     """Reasons why checks did not run. With `full`, all reasons are listed.
 
-    Without `pictures`, the pictures of documents are left out.
+    Without `pictures`, checks of documents' pictures are left out.
     """
     documents = [each for each in run.contents if each not in run.refused and not pictures]
     not_run = (
@@ -459,7 +459,7 @@ def _failures(run: Run) -> Iterator[Line]:
         return result.location, run.is_elsewhere(result)
 
     def line(results: Sequence[Result], text: str) -> Line:
-        """A line on failures with one host and library, with a color for judged libraries."""
+        """A line about failures with one host and library, colored if the library is judged."""
         location, elsewhere = place(results[0])
         inputs = ", for inputs that no document uses" if elsewhere else ""
         if results[0].library in run.compared:

@@ -48,7 +48,7 @@ def to_json(run: Run) -> str:
     - format: Version of this layout, which increases when a key changes or is removed.
     - verdict: "passed", "failed" or "not run". The verdict of a check may also be "differs", for a
       difference that the specification permits. `counts` has the number of checks by verdict.
-    - passed: Whether everything requested ran and nothing failed. `exit_status` is the command's status.
+    - passed: Whether everything requested ran and nothing failed. `exit_status` is an integer.
     - sentence: The verdict as a sentence. `seconds` is the duration of the run, or null.
     - missing: Items that an interrupted run has not finished.
     - refused: Refused documents. `errors` has the faults of these documents.

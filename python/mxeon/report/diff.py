@@ -38,7 +38,7 @@ from mxeon.report import JSON_FORMAT, SCHEMA
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
-SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts of random samples
+SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on which samples are drawn
 # For the same samples, errors on different engines or drivers differ by at most the factor EQUAL,
 # plus FUNCTIONS, which is the error of built-in functions.
 EQUAL, FUNCTIONS = 1.02, 2e-5

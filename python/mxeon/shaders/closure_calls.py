@@ -31,7 +31,7 @@ def check_closure_calls(
 ) -> None:
     """Raise InterfaceError unless a generated stage calls a library's functions as defined.
 
-    If the implementations of several nodes name the wrongly called function, raise ShaderError.
+    If several nodes share the function that is called wrongly, raise ShaderError instead.
     """
     text, known = COMMENT.sub("", stage.getSourceCode()), _functions(library, profile, target)
     for file in stage.getSourceDependencies():

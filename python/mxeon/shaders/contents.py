@@ -35,7 +35,7 @@ class ShownNode:
     values: tuple[tuple[str, tuple[float, ...]], ...] = ()
 
     def has(self, other: "ShownNode") -> bool:
-        """Whether this node may be in the mode that `other`'s inputs select."""
+        """Whether this node may be used in the mode that the inputs of `other` select."""
         return (
             (self.category, self.type) == (other.category, other.type)
             and set(other.inputs) <= set(self.inputs)

@@ -73,7 +73,7 @@ def expanded(path: Path) -> str:
 
 
 def names(language: str) -> tuple[str, ...]:
-    """Names of all shader functions of a language."""
+    """Names of all of eonlib's shader functions in a language."""
     return tuple(signatures(source(language)))
 
 
@@ -110,7 +110,7 @@ def signatures(text: str) -> Mapping[str, tuple[tuple[str, str], ...]]:
 
 
 def uses(text: str) -> Mapping[str, frozenset[str]]:
-    """Functions that each function of a text calls, directly or indirectly."""
+    """For each function of a text, the functions that it calls directly or indirectly."""
     known: dict[str, frozenset[str]] = {}
     for match, body in _definitions(text):
         words = set(re.findall(r"\w+", body)) & known.keys()

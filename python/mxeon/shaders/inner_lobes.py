@@ -71,7 +71,7 @@ class Nodes:
         return element.getInput(name) or (definition and definition.getActiveInput(name)) or None
 
     def upstream(self, outer: Path, port: mx.PortElement) -> Path | None:
-        """Path of the node connected to a port, which lies inside the node at `outer`; or None."""
+        """Path of the node that is connected to a port inside the node at `outer`, or None."""
         if not (node := port.getConnectedNode()):
             return None
         graph, scope = node.getParent(), port.getParent()

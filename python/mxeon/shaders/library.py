@@ -262,7 +262,7 @@ def implementations(
 
 @cache
 def _shipped(library: str, profile: str | None) -> tuple[tuple[str, str], ...]:
-    """Nodedef and target of each implementation in eonlib's documents; the target "" means all."""
+    """Nodedef and target of each implementation in eonlib's documents; "" means all targets."""
     document = mx.createDocument()
     for file in profile_documents(library, profile) if profile else ():
         mx.loadLibrary(mx.FilePath(str(file)), document)

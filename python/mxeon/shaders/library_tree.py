@@ -36,7 +36,7 @@ from mxeon.jobs.signals import Temporary, block_signals
 # All of eonlib, only eonlib's diffuse nodes, and unmodified MaterialX.
 LIBRARIES = ("eonlib", "diffuse", "stock")
 WHOLE, PART, OVERLAY = "whole", "part", "overlay"
-NEEDED = ("targets", "stdlib", "pbrlib")  # subfolders that a whole must have
+NEEDED = ("targets", "stdlib", "pbrlib")  # subfolders of a library of the kind "whole"
 DOCUMENT = ".mtlx"
 CODE = (".glsl", ".osl", ".h", ".metal", ".slang", ".mdl")
 FILES = (DOCUMENT, *CODE)  # endings of a library's files
@@ -69,7 +69,8 @@ def _tree(folder: str) -> Tree:
         )
     installed = {path: file for root in standard_folders() for path, file in files_in(str(root))}
     if all(os.path.isdir(os.path.join(folder, each)) for each in NEEDED):
-        # Libraries that are missing from a whole, such as lights/, come from the installed package.
+        # Libraries that the folder lacks entirely, such as lights/, come from the installed
+        # package.
         tops = {each.partition("/")[0] for each in files}
         kind = WHOLE
         completing = {

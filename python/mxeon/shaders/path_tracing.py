@@ -49,7 +49,7 @@ GLOBAL = re.compile(r"^(?=(?:int|bool|float|vec\d) path_\w+;)", re.MULTILINE)
 
 
 def path_text(text: str, target: str, element: mx.TypedElement, library: str) -> str:
-    """A material's pixel stage as text to include after a path tracer's version and declarations.
+    """A material's pixel stage, to be included after a path tracer's #version and declarations.
 
     Raise InterfaceError if the material mixes surfaces, because a path can follow only one surface.
     """
@@ -95,7 +95,7 @@ def own_text(name: str, library: str, slang: bool) -> str:
 
 
 def thin_walled(element: mx.TypedElement) -> str:
-    """A GLSL literal: whether a surface is thin-walled. Computed values count as false."""
+    """A GLSL literal, true if a surface is thin-walled. Computed values count as false."""
     shaders = mx.getShaderNodes(element) if element.getType() == "material" else [element]
     nodes = [each for each in shaders if isinstance(each, mx.Node)]
     names = ("thin_walled", "geometry_thin_walled")

@@ -200,7 +200,7 @@ def local_directions(
 
 
 def tangents(normal: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Eastward unit tangents (N, 3) at unit normals (N, 3) of the sphere; 0 at the poles of y."""
+    """Eastward unit tangents (N, 3) at unit normals (N, 3) of the sphere; 0 for normals along y."""
     east = np.stack([normal[:, 2], np.zeros(len(normal)), -normal[:, 0]], axis=1)
     unit: NDArray[np.float64] = east / np.maximum(
         np.linalg.norm(east, axis=1, keepdims=True), 1e-30

@@ -20,7 +20,7 @@ from mxeon.shaders.closure_calls import COMMENT
 from mxeon.shaders.document.values import split
 from mxeon.shaders.library_tree import included
 
-# A name. The name of a function is followed by "(" and the types of the parameters.
+# The name of a definition. For a function, "(" and the parameter types follow the name.
 Definition: TypeAlias = tuple[str, ...]
 Source: TypeAlias = tuple[str, Path]  # name and file of the function that implements a node
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Warnings about documents that MaterialX accepts but misreads.
 
-Each rule leads to at most one warning about a document, which is about the first wrong element.
+For each rule, a single warning is issued, about the first element that breaks the rule.
 """
 
 import ctypes
@@ -37,11 +37,11 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """Files that a shader names but that do not exist. An error where the files must be read."""
+    """A shader names files that do not exist. Code that must read the files raises the warning."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:
-    """Numbers that MaterialX reads from a value with a type in NUMERIC."""
+    """The numbers that MaterialX reads from a value of a numeric type."""
     value = plain(element.getValue(), element.getDocument())
     values = value if isinstance(value, tuple) else () if value is None else (value,)
     return cast(tuple[float, ...], values)
@@ -86,7 +86,7 @@ def same_names(element: mx.Element) -> tuple[str, ...]:
 
 
 def _inputs(node: mx.Node) -> set[tuple[str, str]]:
-    """Names and values of a node's inputs that have a value."""
+    """Names and values of those inputs of a node that have a value."""
     return {
         (port.getName(), port.getValueString())
         for port in node.getInputs()
@@ -104,7 +104,7 @@ def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None
 
 
 def warn(kind: type[Warning], texts: Sequence[str]) -> None:
-    """Issue the first of similar warnings, with the number of the rest, which may be thousands."""
+    """Issue the first of several similar warnings, and append the number of further warnings."""
 
     if texts:
         also = f"; {len(texts) - 1} more like it" if len(texts) > 1 else ""

@@ -3,7 +3,8 @@
 
 MaterialX accepts documents from which no shader can be generated, reads every file that a document
 names, and copies names and text values into shaders. So mxeon checks the text of a document before
-MaterialX reads the text, and checks the elements before generation. Each fault is one line.
+MaterialX reads the text, and checks the elements before generation. Each fault is reported on one
+line.
 """
 
 import math
@@ -30,7 +31,7 @@ __all__ = ["Document", "DocumentError", "DocumentWarning", "read_document"]
 
 RAISED = (mx.Exception, LookupError)  # exceptions that MaterialX raises
 LONGEST_NAME = 128  # characters; a file name contains several names and may have 255
-SIMILAR = 0.85  # minimum similarity of suggested categories, which share endings
+SIMILAR = 0.85  # minimum similarity of a suggested category; many categories have the same ending
 
 
 @dataclass(frozen=True)

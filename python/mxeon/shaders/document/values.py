@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements of a document: names in messages, values in Python, and color spaces."""
+"""Helpers for elements of a document: names for messages, Python values, and color spaces."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -11,7 +11,7 @@ TEXT = "document text"
 
 
 def label(document: mx.Document) -> str:
-    """File that a document was read from, or TEXT."""
+    """The file that a document was read from, or the words "document text"."""
     return document.getSourceUri() or TEXT
 
 

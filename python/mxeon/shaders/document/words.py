@@ -48,7 +48,7 @@ Choices = Callable[[], Collection[str]]
 
 
 def word_faults(document: mx.Document, elements: Iterable[mx.Element]) -> Iterator[str]:
-    """Faults of names and text values of a document's elements that are not plain words."""
+    """A fault for each name or text value in a document that is not a plain word."""
     choices = cache(lambda: _choices(document))  # cached, because the whole library is searched
     for element in elements:
         for name in ("name", *element.getAttributeNames()):
@@ -75,7 +75,7 @@ def _broken(element: mx.Element, name: str, text: str, choices: Choices) -> str:
 
 
 def _choices(document: mx.Document) -> Collection[str]:
-    """Names of inputs whose text a generator writes unquoted, and of inputs with such a text."""
+    """Names of inputs whose text a generator writes unquoted, directly or through other inputs."""
     inputs = [
         each
         for tree in (document, document.getDataLibrary())
