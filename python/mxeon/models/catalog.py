@@ -139,7 +139,7 @@ def _scattering_model(row: PbrNode) -> ShadingModel:
 
 
 def _transmission_model(row: PbrNode) -> ShadingModel:
-    """The model of a node in scatter mode T or RT; its values scatter radiance, not importance."""
+    """The model of a node in scatter mode T or RT; the BTDF is for radiance, not for importance."""
     passing, mode = TRANSMISSIONS[row.category], row.fixed["scatter_mode"]
     reflected = row.integral or row.albedo
 
@@ -152,8 +152,8 @@ def _transmission_model(row: PbrNode) -> ShadingModel:
         return xp.where(z[:, np.newaxis] < 0.0, back, front)
 
     def albedo(wo: Array, inputs: Inputs) -> Array:
-        # Radiance changes by the squared index of refraction when it crosses the interface, so the
-        # integral of the BTDF is the transmitted fraction of the energy divided by ior^2.
+        # The interface divides radiance by ior^2, so the integral of the BTDF is the transmitted
+        # fraction of the energy divided by ior^2.
         ior = passing.ior(inputs)[:, np.newaxis]
         ior = array_namespace(ior).maximum(ior, LEAST_IOR)
         passed: Array = passing.passed(wo, inputs, True) / ior**2

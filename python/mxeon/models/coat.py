@@ -10,7 +10,7 @@ E_r includes the energy compensation. E_r is at most the albedo of perfectly ref
 E_r is at most 1. A dielectric layer is not a varnish, because light reflected by EON leaves without
 loss. A real interface reflects and refracts this light on its way out. Random walks below the same
 interface (tools/fits/varnish_walk.py) show that the albedo of the layer is up to 2.2 times too
-high; for an index of refraction of 1.5 and rho 0.2, it is 1.04 to 1.84 times too high.
+high. For an index of refraction of 1.5 and rho 0.2, the albedo is 1.04 to 1.84 times too high.
 `varnished_brdf` models reflection and refraction on the way out in closed form.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
@@ -29,9 +29,10 @@ For constant `alpha` and `ior`, the albedo and the energy compensation depend on
 cosine. Both are integrated at Chebyshev nodes and interpolated.
 
 **The varnish** is EON below a rough dielectric interface that also acts on light on its way out.
-The interface reflects f_r. It transmits the fraction T = 1 - E_r of the light, which arrives at EON
-along refracted directions w'. Each time light returns from EON, the interface reflects a fraction R
-of it back to EON. EON's first reflection uses the BRDF f_b, every later reflection a mean of f_b.
+The interface reflects f_r and transmits the fraction T = 1 - E_r of the light, which arrives at EON
+along refracted directions w'. Each time light returns from EON, the interface reflects the fraction
+R of this light back to EON. EON's first reflection uses the BRDF f_b. Every later reflection uses a
+mean of f_b.
 The sum of all reflections is that of [Saunderson1942], for a base whose albedo varies with angle:
 
     f = f_r + T(mu_o) T(mu_i) / n^2 [f_b(wo', wi') + R k(mu_o) k(mu_i) / (pi (1 - R <k>))]       (1)
@@ -54,11 +55,11 @@ F = E_single / E_ss, in a form that makes f reciprocal:
 
     E_r = E_single + D,  D = F^2 (1 - E_ss),  f_r = f_single + D(mu_o) D(mu_i) / (pi <D>)
 
-There are three approximations: the mean of f_b after EON's first reflection; D; and directions that
-refract as at a smooth surface. They were compared with random walks (tools/fits/varnish_walk.py)
-for n from 1.1 to 2, alpha from 0.05 to 0.7, rho from 0 to 1, r 0 and 1, and cosines from 0.05 to 1.
-The error of the albedo is at most 0.012, and 0 at rho 1. The light that leaves EON through a
-twelfth of the hemisphere is 0.95 to 1.05 times that of the walks at r 0, and 0.79 to 1.15 times at
+The mean of f_b, the term D, and the directions w', which are refracted as at a smooth surface, are
+approximations. The model was compared with random walks (tools/fits/varnish_walk.py) for n from 1.1
+to 2, alpha from 0.05 to 0.7, rho from 0 to 1, r 0 and 1, and cosines from 0.05 to 1. The error of
+the albedo is at most 0.012, and 0 at rho 1. The light that EON reflects into a twelfth of the
+hemisphere is 0.95 to 1.05 times the light of the random walks at r 0, and 0.79 to 1.15 times at
 r 1. The difference between (2) and the integral of (1) is below 1e-6, but up to 1e-4 at alpha 0.01
 and n near 1.
 
@@ -109,7 +110,7 @@ class Coat:
     reflected: list[float] | Array
 
     def at(self, mu: Array) -> tuple[Array, Array]:
-        """(1 - E_ss) / E_ss, at least 0, and E_r, in [0, 1], at a cosine."""
+        """Values of (1 - E_ss) / E_ss and E_r at a cosine, clamped to at least 0 and to [0, 1]."""
         x = scaled_cosine(mu, self.alpha)
         missing, reflected = (
             arrays.at_least_0(chebyshev_sum(cast(Array, each), x))
@@ -459,7 +460,7 @@ def nonzero(x: float | Array) -> Array:
 
 
 def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
-    """The inverse of `scaled_cosine`, mu = alpha sinh(x^3 asinh(1 / alpha)), and its derivative."""
+    """Inverse mu = alpha sinh(x^3 asinh(1 / alpha)) of `scaled_cosine`, and derivative dmu/dx."""
     xp = array_namespace(alpha)
     extent = xp.asinh(1.0 / alpha)
     mu = arrays.at_most(alpha * xp.sinh(extent * x**3), 1.0)
@@ -483,7 +484,7 @@ def integral_matrices() -> tuple[Array, Array, Array, Array]:
 
 
 def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
-    """Chebyshev coefficients of a `Varnish`, and an array (4,) of its means in `Means`' order."""
+    """Chebyshev coefficients of a `Varnish`, and an array with the four fields of `Means`."""
     xp, coat = array_namespace(alpha, ior), coat_of(cast(float, alpha), cast(float, ior))
     places, slope, to_curves, to_nodes = (like(each, alpha) for each in integral_matrices())
     matrix = like(chebyshev_coefficients(np.eye(TERMS)), alpha)
@@ -507,8 +508,8 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     R = squared + xp.sum(total * share)
     H = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
-    # The integral of s / t over azimuths is 2 S S' (1 / max(mu, mu') - 1). With R(m), the fraction
-    # of light with the cosine m that is reflected back to EON,
+    # The integral of s / t over azimuths is 2 S S' (1 / max(mu, mu') - 1). R(m) is the fraction of
+    # the light with the cosine m that is reflected back to EON. Hence b and <b>_R are integrals.
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
     #   <b>_R = 8 / (pi R^2) int R(m) S (1 - m) [int_0^m R(x) S x dx] dm.
     S = root((1.0 - fine) * (1.0 + fine)) / ior

@@ -21,8 +21,8 @@ Raises `ValueError`, which names the first bad element, if an argument leaves it
 shapes do not broadcast.
 
 Functions that validate no arguments have the names and the arguments of the shader functions in
-`genglsl/lib/eon.glsl` and `genglsl/sampling/oren_nayar_family.glsl`. They expect the channels of
-`rho` on the first axis.
+`genglsl/lib/eon.glsl` and `genglsl/sampling/oren_nayar_family.glsl`. These functions expect the
+channels of `rho` on the first axis.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ def cosines(wo: Array, wi: Array) -> tuple[Array, Array, Array]:
 
         s = dot(wo, wi) - mu_o mu_i = wo.x wi.x + wo.y wi.y
 
-    `mu_o`, `mu_i` (...): z of wo and wi, clamped to at most 1 since rounding may exceed 1. `s`
-    (...): In [-1, 1] up to rounding; not clamped. [Portsmouth2025], below Eq. (3).
+    `mu_o`, `mu_i` (...): z of wo and wi, clamped to 1 because rounding may make z larger.
+    `s` (...): In [-1, 1] up to rounding; not clamped. [Portsmouth2025], below Eq. (3).
     """
     s = wo[..., 0] * wi[..., 0] + wo[..., 1] * wi[..., 1]
     return arrays.cosine(wo[..., 2]), arrays.cosine(wi[..., 2]), s
@@ -184,7 +184,7 @@ def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) ->
     """(sin(alpha) - (2 beta / pi)^3) / cos(beta); the limit 6 / pi if both directions graze.
 
     (2 beta / pi)^3 is 1 - q (3 - 3 q + q^2), where q = 1 - 2 beta / pi, and sin(alpha) is
-    1 - cos(alpha)^2 / (1 + sin(alpha)). The difference of both is written without the ones, so that
+    1 - cos(alpha)^2 / (1 + sin(alpha)). The ones cancel in the difference, so they are omitted, and
     no digits are lost.
     """
     xp = array_namespace(mu_o, mu_i, S_o, S_i)
@@ -351,9 +351,9 @@ def eon_brdf_approx(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: Arr
         f as in `eon_brdf`,  G_F / pi = g1 m + g2 m^2 + g3 m^3 + g4 m^4,  m = 1 - mu
 
     Accuracy: the result is within 1.25e-3 / pi of `eon_brdf`. For mu < 0.0014, where the quartic
-    makes H negative, H is 0. The paper's Listing 1 instead keeps 1 - E_FON above 1e-7. Its result
-    differs by less than 1.4e-7 / pi for roughness > 1e-5, and is not Lambert's BRDF at roughness 0.
-    [Portsmouth2025], Eqs. (14), (16)-(19).
+    makes H negative, H is 0. The paper's Listing 1 instead keeps 1 - E_FON above 1e-7. The result
+    of Listing 1 differs by less than 1.4e-7 / pi for roughness > 1e-5, and is not Lambert's BRDF at
+    roughness 0. [Portsmouth2025], Eqs. (14), (16)-(19).
 
         >>> eon_brdf_approx([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.073622, 0.311002])

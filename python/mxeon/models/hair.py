@@ -118,10 +118,10 @@ TEXT = HairForm()
 class Section:
     """Angles of a view direction and of the refracted ray in the cross-section of the fiber."""
 
-    sin_o: Array  # sine and cosine of the viewer's inclination
-    cos_o: Array
-    gamma_o: Array  # angles between the normal and the view, and the normal and the refracted ray
-    gamma_t: Array
+    sin_o: Array  # sine of the viewer's inclination
+    cos_o: Array  # cosine of the viewer's inclination
+    gamma_o: Array  # angle between the normal and the view
+    gamma_t: Array  # angle between the normal and the refracted ray
 
 
 def section(wo: Array, ior: Array) -> tuple[Section, Array]:

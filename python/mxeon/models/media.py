@@ -226,12 +226,12 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Blurred cosine for one exponential, and the part of the exponential for chords up to 2."""
+    """Cosine blurred by one exponential, and fraction of the exponential for chords up to 2."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
-    # Compute the mean of max(cos(theta), 0) over the circle of all points at this distance.
+    # Compute the mean of max(cos(theta), 0) over all points of the unit sphere at equal distance.
     mu, squared = mu[..., np.newaxis], distance * distance
     along = mu * (1.0 - 0.5 * squared)
     across = arrays.root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))

@@ -151,7 +151,10 @@ def stack_xyz(x: Array, y: Array, z: Array) -> Array:
 
 
 def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
-    """Cosine and sine of wo's azimuth, and sine of wo's polar angle; a normal wo has azimuth 0."""
+    """Cosine and sine of wo's azimuth, and sine of wo's polar angle.
+
+    If wo is the normal, the azimuth is 0.
+    """
     xp, sine = array_namespace(wo), arrays.hypot(wo[..., 0], wo[..., 1])
     tilted = sine > 0.0
     length = xp.where(tilted, sine, 1.0)
@@ -430,7 +433,7 @@ def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[A
 
 
 def _normalized(wo: Array, w: Array, pdf: Array) -> tuple[Array, Array]:
-    """w normalized and rotated from the frame in which wo has azimuth 0, and pdf |w|^3."""
+    """Direction of w, rotated from the frame in which wo has azimuth 0, and pdf |w|^3."""
     length = root(array_namespace(w).sum(w * w, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
     return rotate_z(w / length[..., np.newaxis], cosine, sine), pdf * length**3
@@ -500,7 +503,7 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     u1, u2 = unpack_uniforms(u)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
-    # Rescale u1 on either side of P_u to [0, 1).
+    # The part of [0, 1) that contains u1, below or above P_u, is mapped to [0, 1).
     xp = array_namespace(u1, P_u)
     length = xp.where(is_uniform, P_u, 1.0 - P_u)
     v = xp.where(is_uniform, u1, u1 - P_u) / length
@@ -523,7 +526,7 @@ def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return P_u * (0.5 / np.pi) + (1.0 - P_u) * cltc_pdf(wo, wi, roughness)
 
 
-# The paper states no error of the approximation below, which is for mu and roughness in [0, 1].
+# The paper does not state how accurate this probability is.
 def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
     """Probability P_u of the uniform lobe: [Portsmouth2025], Listing 4."""
     P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu

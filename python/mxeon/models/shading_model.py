@@ -233,7 +233,7 @@ class ShadingModel:
     def albedo_dir(
         self, mu: ArrayLike, *inputs: ArrayLike, azimuth: ArrayLike = 0.0, **named: ArrayLike
     ) -> Array:
-        """Directional albedo, the integral of value times cosine, or of the value for hair.
+        """Directional albedo, the integral of value times cosine. For hair, the cosine is omitted.
 
         - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
         - `azimuth` (...): Angle between the viewer's azimuth and the tangent, in radians, which
@@ -278,7 +278,7 @@ def _on_side(
 ) -> Array:
     """Values of a function, but 0 on one side of the horizon.
 
-    - `side`: 1 for the value 0 below the horizon, -1 for the value 0 above it, None for neither.
+    - `side`: 1 if values below the horizon are 0, -1 if values above the horizon are 0, else None.
     """
     wo, wi = call.vectors
     if side is None:

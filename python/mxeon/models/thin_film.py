@@ -24,10 +24,11 @@ specification, the reflectances are R12 and R23, the phase is phi = phi_21 + phi
     I = C_0 + 2 sum of C_m S(m D, m phi),  C_0 = R12 + R_s,  R_s = T121^2 R23 / (1 - R12 R23),
     C_m = (R_s - T121) sqrt(R12 R23)^m,  T121 = 1 - R12
 
-In this file, the term of order m is computed from the complex power z^m of z = r21 r23 = -r12 r23,
-whose length is sqrt(R12 R23) and whose angle is phi. z^m has derivatives everywhere. Roots and
-phases have no derivatives where a reflectance is 0. A reflectance is 0 for a film with index of
-refraction 1, at Brewster's angle, and if film and substrate have the same index of refraction.
+where D is the optical path difference. In this file, the term of order m is computed from the
+complex power z^m of z = r21 r23 = -r12 r23, whose length is sqrt(R12 R23) and whose angle is phi.
+z^m has derivatives everywhere. Roots and phases have no derivatives where a reflectance is 0. A
+reflectance is 0 for a film with index of refraction 1, at Brewster's angle, and if film and
+substrate have the same index of refraction.
 """
 
 from __future__ import annotations
@@ -140,8 +141,8 @@ def over_schlick(
 
     The dip of the Schlick curve can make F negative. A negative F has no amplitude and counts as 0.
     The phase jumps by pi where film and substrate have the same index of refraction. Indices with a
-    relative difference below SAME count as equal. For example, a film with index 1.5 would have
-    color0 0.04, which differs in float32 by 2e-8.
+    relative difference below SAME count as equal, because colors may be rounded. For example,
+    float32 changes 0.04, the color0 for index 1.5, by a relative error of 2e-8.
     """
     xp = array_namespace(mu, film_ior, F)
     F = arrays.at_least_0(F)
@@ -376,10 +377,7 @@ def _film_average(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of POINTS nodes, matrix that interpolates from these to FINE nodes, and weights.
-
-    The weights are for the FINE nodes.
-    """
+    """Cosines of POINTS nodes, interpolation matrix to FINE nodes, and weights of FINE nodes."""
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)
@@ -448,7 +446,7 @@ DEGREE = 48  # degree of the polynomial in the cosine that replaces F of a film 
 def film_reflectance(
     category: str, mu: ArrayLike, inputs: Mapping[str, ArrayLike], form: Form = TEXT
 ) -> Array:
-    """Reflectance of a smooth node under a thin film, without the tint, for unpolarized light.
+    """Fresnel reflectance of a node under a thin film for unpolarized light, without the tint.
 
     Accuracy: the error of the infinite sum is below 1e-6 over a dielectric for cosines above 0.01,
     and below 1e-4 over a conductor at grazing angles, where many orders contribute. A film with an

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Transmission through microfacets of dielectrics and of the generalized Schlick node.
 
-BTDFs are in 1/sr and without the cosine. An index of refraction is that of the medium of wi divided
-by that of the medium of wo, so a view from inside a solid has the inverse of the node's index. If
+BTDFs are in 1/sr and without the cosine. `ior` is the index of refraction of wi's medium divided by
+the index of wo's medium, so a view from inside a solid has the inverse of the node's index. If
 alpha is 0, or if the index of refraction is 1, so that light is not bent, the BTDF is a delta
 function and counts as 0. BTDFs are for radiance, which is divided by ior^2 when light passes from
 the medium of wi to the medium of wo. Hence the integral of BTDF times cosine over wi, multiplied by
@@ -173,8 +173,8 @@ CAP_BLOCK = 2**4  # views per block
 # Largest 1 - ior^2 in the quadrature; if `ior` is below 3e-8, almost no light is transmitted.
 MOST_SQUARED = 1.0 - 1e-15
 
-# Four values per quadrature node: the cosine wo . wh, the cosine of wi, the length of
-# (alpha_x x, alpha_y y, z) of wi, and the weight.
+# Four values per quadrature node: the cosine wo . wh, the cosine of wi, the weight, and between
+# them the length of (alpha_x x, alpha_y y, z), where x, y and z are the components of wi.
 Nodes: TypeAlias = tuple[Array, Array, Array, Array]
 
 
@@ -262,7 +262,7 @@ def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
 
 @lru_cache(maxsize=2)
 def _nodes(axes: int) -> tuple[Array, Array, Array]:
-    """Nodes in both random numbers of `visible_normal`, and weights, on a new first axis."""
+    """Nodes in the two random numbers that select a visible normal, and weights of the nodes."""
     x, w = np.polynomial.legendre.leggauss(CAP_NODES)
     around = (np.arange(CAP_NODES) + 0.5) / CAP_NODES
     height, turn = np.meshgrid(0.5 * (x + 1.0), around, indexing="ij")

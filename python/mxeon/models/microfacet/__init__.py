@@ -64,7 +64,7 @@ class Curve:
     critical: Callable[..., Array] = lambda **material: np.zeros(1)
 
 
-# Some curves receive a tint among their inputs, which does not change F.
+# The tint is an input of some curves, but does not change F.
 DIELECTRIC_CURVE = Curve(
     lambda c, ior, tint: fresnel.dielectric(c, ior)[np.newaxis],
     lambda ior, tint: fresnel.dielectric_avg(ior)[np.newaxis],
@@ -158,7 +158,7 @@ def _series_variables(wo: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _missing_by_views(rows: Array) -> Array:
-    """`_anisotropic_missing`, but equal views are evaluated once and many views by a polynomial."""
+    """(1 - E_ss) / E_ss, computed once for equal views, and by a polynomial for many views."""
     wo, alphas = rows[:3], rows[3:]
     uniform = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
     if uniform and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
@@ -296,7 +296,7 @@ def node_albedo(
 ) -> Array:
     """Directional albedo of `node_brdf`.
 
-    - `summed`: Whether to sum like MaterialX's environment lookup; see `slope_nodes`.
+    - `summed`: Whether to sum as MaterialX sums an environment; `slope_nodes` explains how.
     """
     curve, vectors, numbers = _material(category, inputs)
     return lobe_albedo(curve, wo, inputs["roughness"], vectors, numbers, compensate, summed)
@@ -501,7 +501,7 @@ def lobe_albedo(
 
     views = {"wo": wo, "roughness": roughness}
     lead_shape(views | dict(vectors), numbers)  # raises an error that names the arguments
-    # The compensation is the same for all slopes, so it is computed before slopes add axes.
+    # The compensation is the same for all slopes, so it is computed before the slopes add two axes.
     channels, unseen, average = channel_count(vectors), np.zeros(()), np.zeros(1)
     if compensate:
         unseen = evaluate_number(missing_of, views, {})

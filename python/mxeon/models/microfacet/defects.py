@@ -69,7 +69,7 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """F_ss of a Schlick curve of exponent 5; since June 2026, MaterialX's F_ss of every curve."""
+    """F_ss of a Schlick curve with exponent 5; MaterialX's F_ss of all curves since June 2026."""
     return normal + (grazing - normal) / 21.0
 
 
@@ -128,8 +128,8 @@ def _june(pair: Pair) -> Array:
 UNCOMPENSATED = "no energy compensation"
 AND_FIT, AVERAGE_BY_ENDS = "and MaterialX's fit of E_ss", "the average F0 + (F90 - F0) / 21"
 MEAN_ALPHA = "Smith at the geometric mean"
-# Wrong compensations: the end of the defect's name, the end of the defect's title, the function
-# that replaces F_ss, and the function that computes (1 - E_ss) / E_ss.
+# Each row describes a wrong compensation by the end of the defect's name, the end of the defect's
+# title, the function that replaces F_ss, and the function that computes (1 - E_ss) / E_ss.
 COMPENSATIONS = (
     ("half", "F at the half vector", _F_half, microfacet.missing),
     ("f0", "F along the normal", _F_normal, microfacet.missing),
@@ -227,7 +227,7 @@ def layer_albedo(
 
 
 def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Array:
-    """Compensation factor with F as the average reflectance and the fitted E_ss, (N, 1 or 3)."""
+    """Compensation factor 1 + F (1 - E_ss) / E_ss with E_ss from ALBEDO_FIT, (N, 1 or 3)."""
     E_ss = fitted_albedo(*_arguments(wo, inputs), 1.0, 1.0)[:, np.newaxis]
     return 1.0 + F * (1.0 - E_ss) / E_ss
 

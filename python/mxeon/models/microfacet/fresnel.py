@@ -30,12 +30,12 @@ from mxeon.models.core.quadrature import unit_rule
 # Cosine at which Hoffman's correction is largest: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
 
-# Index of refraction below which LEAST_IOR replaces n in 1 / n. F_ss is 1 up to rounding for such
-# an n, and 1 / LEAST_IOR^3 is finite.
+# LEAST_IOR replaces a smaller index of refraction n in 1 / n. For such an n, F_ss is 1 up to
+# rounding. 1 / LEAST_IOR^3 is finite.
 LEAST_IOR = 1e-50
 
-# Double-exponential quadrature substitutes c = X^2 / (X^2 + 1/X^2), where X = exp(pi/4 sinh(t)).
-# The nodes have |t| < 3.2, because weights at larger |t| are below 1e-15.
+# Double-exponential quadrature substitutes c = X / (1 + X), where X = exp(pi sinh(t)). The nodes
+# have |t| < 3.2, because weights at larger |t| are below 1e-15.
 STEP, STEPS = 0.0625, 51
 GROUP = 2**6  # materials per block
 
@@ -133,7 +133,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     The square root in F is singular at c^2 = 1 - n^2. For weakly absorbing media, this c is close
     to the real axis. For strongly absorbing media, F has a pole at a c of size 1 / |n|.
     """
-    # Elements of arrays other than NumPy's cannot be assigned.
+    # Some libraries do not support assignment to the elements of an array.
     if array_namespace(ior, extinction) is not arrays.NUMPY:
         return _split_avg(ior, extinction)
     ior, extinction = np.broadcast_arrays(ior, extinction)

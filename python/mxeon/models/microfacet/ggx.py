@@ -16,10 +16,11 @@ Accuracy: the relative error is below 2e-14, except for E_ss.
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
 shapes do not broadcast.
 
-(1 - E_ss) / E_ss, the energy that single scattering loses divided by the energy that it reflects,
-comes from a table that is computed once. The table has Chebyshev polynomials in sqrt(alpha) and in
-the cube root of s = mu (1 + alpha) / (mu + alpha), which lies in [0, 1]. E_ss is a smooth function
-of sqrt(alpha) and s, except for terms like s log(s). The cube root makes these terms smooth enough.
+(1 - E_ss) / E_ss is the energy lost by single scattering divided by the energy reflected by single
+scattering. This quotient comes from a table that is computed once. The table has Chebyshev
+polynomials in sqrt(alpha) and in the cube root of s = mu (1 + alpha) / (mu + alpha), which lies in
+[0, 1]. E_ss is a smooth function of sqrt(alpha) and s, except for terms like s log(s). As functions
+of the cube root of s, these terms are smooth enough.
 """
 
 from __future__ import annotations
@@ -219,18 +220,18 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
     return roughness_anisotropy(1.0 - g, a)
 
 
-# Gauss-Legendre nodes per panel, panels between wo and the normal, and elements per block.
+# Numbers of Gauss-Legendre nodes per panel, panels between wo and the normal, elements per block.
 RULE_NODES, PANELS, ALBEDO_BLOCK = 28, 3, 2**10
 RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 
 # Smallest scale of the nodes near wo, and smallest elevation of wo, in radians. Both limits change
 # E_ss by less than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
-# Smallest alpha divisor and elevation for arrays other than NumPy's. Derivatives square these
-# numbers, possibly in float32.
+# Smallest alpha that is a divisor, and smallest elevation, for arrays other than NumPy's, whose
+# derivatives square these numbers, possibly in float32.
 LEAST_SQUARED = 1e-15
 
-# Mantissas of cosines are rounded to multiples of 1 / MANTISSA_STEPS, so that more of them are
+# Mantissas of cosines are rounded to multiples of 1 / MANTISSA_STEPS, so that more cosines are
 # equal.
 MANTISSA_STEPS = 2.0**44
 
@@ -256,10 +257,10 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
     Let u = |wo + wi|^2 = a + b cos(phi) and k = (1 - alpha^2) (mu + mu_i)^2. Then
     h_z^2 = (mu + mu_i)^2 / u, and the integral of (u / (u - k))^2 over the azimuth phi is
-    elementary. Half sums and half differences of the elevations of wo and wi make it a product of
-    sums of positive numbers. The integral over the elevation of wi is computed by quadrature. It is
-    split at the elevation of wo, and its nodes are denser there. [MaterialX2026], section Energy
-    Compensation.
+    elementary. As a function of half the sum and half the difference of the elevations of wo and
+    wi, the result is a product of sums of positive numbers. The integral over the elevation of wi
+    is computed by quadrature, which is split at the elevation of wo, where the nodes are denser.
+    [MaterialX2026], section Energy Compensation.
 
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
         array([0.30685282, 0.99412395])
@@ -268,7 +269,7 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
 
 def albedo(mu: Array, alpha: Array) -> Array:
-    """E_ss for valid float64 arrays; cosines with the same leading 44 bits share one E_ss."""
+    """E_ss for valid float64 arrays. Cosines that are equal after rounding share one E_ss."""
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 < mu.size:
         mantissa, exponent = np.frexp(mu)
         rounded = np.ldexp(np.round(mantissa * MANTISSA_STEPS), exponent) / MANTISSA_STEPS
@@ -284,7 +285,7 @@ def _in_blocks(mu: Array, alpha: Array) -> Array:
 
 
 def _extrapolated(mu: Array, alpha: Array) -> Array:
-    """`quadrature`, but extrapolated for cosines near 1, where the arcsine has no derivative."""
+    """E_ss by `quadrature`, extrapolated near cosine 1, where the arcsine has no derivative."""
     xp = array_namespace(mu, alpha)
     step = xp.where(mu > 1.0 - ALONG, ALONG, 0.0)
     near, far = quadrature(xp.stack([mu - step, mu - 2.0 * step]), alpha)
@@ -354,7 +355,7 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
 
 
 # Number of Chebyshev nodes in the cube root of s and in the square root of alpha. REFINED is the
-# argument `refined` of the quadrature that fills the table, TABLE_BLOCK the elements per block.
+# argument `refined` of the quadrature that fills the table. A block has TABLE_BLOCK elements.
 NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
 # For at least MANY cosines and a single alpha, cubics in CELLS cells replace the polynomials. The
@@ -375,7 +376,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
 
 def _interpolated(mu: Array, alpha: Array) -> Array:
-    """`missing_light` from the table: the polynomials in alpha, then the polynomials in s."""
+    """`missing_light` from the table, by polynomials in sqrt(alpha) and then in cbrt(s)."""
     xp = array_namespace(mu, alpha)
     table = _table()
     powers = chebyshev.chebyshev_polynomials(root(alpha), table.shape[1])
@@ -415,7 +416,7 @@ def _cubics(alpha: float) -> Array:
     x = np.sort(chebyshev.chebyshev_nodes(4))
     values = chebyshev.chebyshev_sum(rows, (np.arange(CELLS)[:, np.newaxis] + x) / CELLS)
     cubics = np.linalg.inv(np.vander(x, increasing=True)) @ values.T
-    # The end of the last cell is the start of an extra cell, which is never evaluated elsewhere.
+    # The end of the last cell is the start of an extra cell, which is evaluated only at this point.
     end = [chebyshev.chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)
 

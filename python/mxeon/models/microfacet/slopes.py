@@ -226,7 +226,7 @@ def refracting_nodes(
 
 
 def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Array, Array]:
-    """Ends of the range of r with (mu_o + B r)^2 > squared (1 + g r^2); 0 and 0 if no r has it."""
+    """Range of r in which (mu_o + B r)^2 > squared (1 + g r^2), or (0, 0) if there is no such r."""
     a, b, d = B * B - squared * g, mu_o * B, mu_o * mu_o - squared
     xp, size = array_namespace(a, b, d), root(at_least_0(b * b - a * d))
     ahead, inside = b > 0.0, d > 0.0
@@ -275,7 +275,7 @@ def _split_azimuths(
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
-    """Azimuth relative to wo, with cosine sqrt(squared) divided by the sine of wo's polar angle."""
+    """Azimuth relative to wo whose cosine is sqrt(squared) / sin(theta_o)."""
     xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
     return arrays.arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
 
@@ -352,5 +352,5 @@ def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     rise = xp.exp(extent * x)
     fall = 1.0 / rise
     half = 0.5 * scale
-    # sinh and cosh are computed from one exponential, in a third of the time of two calls.
+    # Two calls of sinh and cosh would take three times as long as one exponential.
     return half * (rise - fall), weight * extent * half * (rise + fall)
