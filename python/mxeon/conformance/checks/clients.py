@@ -57,7 +57,7 @@ def same(frame: Frame) -> Frame:
 
 
 def premultiplied(frame: Frame) -> Frame:
-    """A frame without an environment; since MaterialX 1.39.5, mixes scale the weights of lobes."""
+    """A frame without an environment whose mixes scale lobe weights, as since MaterialX 1.39.5."""
     from mxeon.shaders.options import offers
 
     methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
@@ -118,7 +118,7 @@ AXES: dict[str, dict[str, Build]] = {
 
 @lru_cache(maxsize=1)
 def frames() -> tuple[tuple[set[str], Frame], ...]:
-    """All frames, each with the names of the frame's states, in the order of their shaders."""
+    """All frames, each with the names of the frame's states, sorted by the generator's methods."""
     rows = []
     for states in covering(tuple(map(tuple, AXES.values()))):
         frame = Frame()
@@ -146,7 +146,7 @@ def lamp_light(lamp: Lamp, position: Array) -> tuple[Array, Array]:
 
 
 def shadow(client: Client, position: Array) -> Array:
-    """Fraction of the first light that shadows leave at each position, (N, 1)."""
+    """Fraction of the first light that is not shadowed at each position, (N, 1)."""
     x = np.insert(position, 3, 1.0, axis=1) @ np.reshape(client.shadow, (4, 4))
     mean, square = client.moments
     behind = np.maximum(0.5 + 0.5 * x[:, 2:3] / x[:, 3:] - mean, 0.0)
@@ -168,9 +168,9 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
 
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
-    """Comparisons of colors, then of alphas, for each frame, with the names of the frame's states.
+    """Compare colors, then alphas, of each frame; yield the names of the frame's states as well.
 
-    The states include "alpha" if a comparison is of alphas.
+    If alphas are compared, the names include "alpha".
     """
     from mxeon.hosts.raster import ALPHA_THRESHOLD  # loads MaterialX
     from mxeon.shaders.generators import CLIENT_OPTIONS

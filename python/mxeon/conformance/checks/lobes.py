@@ -123,7 +123,7 @@ def surroundings(case: Case) -> Compared:
         batch = batch.altered(color=samples.WHITE)
     uniform = case.albedo(batch)
     bright = uniform.min(axis=1) > LEAST_LIGHT
-    if bright.any():  # skip dark pairs, unless all pairs are wrongly dark
+    if bright.any():  # skip dark pairs, unless all pairs are dark
         batch, uniform = batch.where(bright), uniform[bright]
     with np.errstate(divide="ignore", invalid="ignore"):
         measured = case.albedo(batch, samples.sky_map()) / uniform
@@ -310,7 +310,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, visible = np.arange(len(views.wo))[:, np.newaxis], {}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets' peak
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets peak here
     for name in {"weight", "occlusion"} & views.inputs.keys():
         visible[name] = np.maximum(views.inputs[name], LEAST_WEIGHT)
     views = replace(views, wo=wo, wi=wi).altered(**visible)
@@ -370,10 +370,11 @@ def unsigned(batch: Batch) -> Batch:
 
 
 def negative(case: Case) -> Iterator[Compared]:
-    """Compare light for a negative red with light for red 0, or with minus light for positive red.
+    """Compare the light for a color with a negative red channel with the expected light.
 
-    EON's light is a rho + b rho^2 / (1 - rho (1 - <E>)), where <E> is the average albedo of FON.
-    The coefficients a and b follow from the light for rho and the light for rho / 2.
+    Some nodes treat negative red as 0; other nodes return minus the light for positive red. EON's
+    light is a rho + b rho^2 / (1 - rho (1 - <E>)), where <E> is the average albedo of FON. The
+    coefficients a and b follow from the light for rho and the light for rho / 2.
     """
     quantities = [(case.backend.direct, case.direct)]
     if not family(HairSpec)(case.spec):  # MaterialX computes hair's albedo from unclamped tints

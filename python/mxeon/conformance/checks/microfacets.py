@@ -156,7 +156,7 @@ def diagnose_sky(case: Case) -> Diagnosis:
 
 
 def anisotropic_albedo(case: Case) -> Iterator[Compared]:
-    """Albedos by the host's environment method, and by the library's own lookups if there are any.
+    """Albedos with the host's environment method, and with the library's own lookups if available.
 
     In a prefiltered environment, eonlib fits Fresnel curves. The fit is exact for perfect mirrors,
     but too coarse for metals. A sum over directions by eonlib's own code must clamp negative
@@ -295,7 +295,7 @@ CLIENT = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 
 
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
-    """Light by the methods of known clients, compared with light that no method may change."""
+    """Compare light by the methods of each known client with light that all methods must return."""
     transmits = TRANSMITTING(case.spec)
     if transmits:  # the methods of Storm, then those of MaterialXView
         clients = [Methods("prefilter", "opacity"), Methods("prefilter", "refraction")]
@@ -371,7 +371,7 @@ def diagnose_methods(case: Case) -> Diagnosis:
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Compare mode RT with mode R, and mode T with no reflection; yield the cause of an error."""
+    """Compare mode RT with mode R, and mode T with no reflection; yield the cause of each error."""
     spec = case.of(TransmissionSpec)
     mode_R = case.another(spec.reflection) if spec.reflects else None
     unlike = "_unlike_R" if mode_R else ""
@@ -539,8 +539,8 @@ def film_limit(case: Case) -> list[Compared]:
     """Values under films of IOR 1 or less, or of thickness THIN_LIMIT, compared with no film.
 
     A film with an IOR below 1 must equal a film with IOR 1, even if the film with IOR 1 is wrong.
-    For a thin film, the equations themselves deviate, because the eye's sensitivities of five
-    digits do not add up to 1. This deviation is accepted.
+    For a thin film, the equations themselves deviate, because the tabulated sensitivities of the
+    eye have five digits and do not add up to exactly 1. This deviation is accepted.
     """
     # Remove the dip of Schlick's curve, because a negative F counts as 0 under a film. Compare near
     # the mirror direction and with equal alphas, because another check covers two alphas.

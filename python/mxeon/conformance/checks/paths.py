@@ -71,8 +71,8 @@ FUNCTIONS = {
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # shader languages of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
 ANSWERS = cache.Recent[Array](64)  # cache for a check and the check's control
-# Two views that, from inside a solid, see many or few facets below the critical angle, and a third
-# view at which no light leaves a smooth solid.
+# Views of a solid. From inside, two views see many or few facets below the critical angle; at the
+# third view, no light leaves a smooth solid.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 # Smallest value that must be sampled. Smaller values may be missed, because a sheen's fitted albedo
@@ -336,10 +336,10 @@ def pdf(case: Case) -> Measurement:
 
 
 def parts(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Compare weight times density with value, and density with material_pdf; find missed light.
+    """Compare weight times density with value, and density with material_pdf; find unsampled light.
 
-    Each comparison comes with the cause of a possible difference. Measured values are divided by
-    expected values, and errors are divided by the amplification of roundings.
+    Each comparison is paired with the cause to report. Measured values are divided by expected
+    values, and errors are divided by the amplification of roundings.
     """
     for text, batch in subjects(case, False, True):
         u, wo = random(len(batch.wo), generator()), batch.world(batch.wo)
@@ -530,8 +530,8 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # Cells divide the angle from a pole and the azimuth around the pole. The pole is the main direction
 # of a smooth lobe, for which the first ring of cells is narrow. If a density of N samples is wrong
 # everywhere by a fraction e, chi-square grows by N e^2. The standard deviation of chi-square is the
-# square root of twice the number of cells. In 272 cells, e = 6.5 % is therefore six standard
-# deviations with 2^15 samples, and three standard deviations with half as many samples.
+# square root of twice the number of cells. With 272 cells, an e of 6.5 % therefore adds six
+# standard deviations for 2^15 samples, and three standard deviations for half as many samples.
 CELLS = 16  # divisions of the angle and of the azimuth
 ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes per axis of a patch
 # Attempts to show that samples follow a density, from cheap to accurate. Each row has a number of
@@ -697,7 +697,7 @@ ROWS = (
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=diagnosis.defect("other_path_value"),
-          methods=lambda spec, methods: not methods.distributed),  # distributing a layer changes sums above 1
+          methods=lambda spec, methods: not methods.distributed),  # distribution changes sums above 1
     PATHS(key="path_emission",
           claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
           applies=check.family(emission.EmissionSpec), measure=path_emission, tolerance="value",

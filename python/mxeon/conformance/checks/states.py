@@ -52,7 +52,7 @@ class Pixels:
     light: Array  # direction of a second light, in the local frame
     second: Mapping[str, Array] | None = None  # inputs of a second lobe
     second_frame: Array | None = None  # frame of the second lobe, None for the surface's frame
-    differing: tuple[str, ...] = ()  # input of each pixel that differs between two lobes
+    differing: tuple[str, ...] = ()  # per pixel, the input in which two lobes differ
     lights: int = 1
     sky: str = ""  # "uniform" or "uneven"
     client: Client = CLIENT  # how the environment is turned and scaled
@@ -286,11 +286,11 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     rows = covering(axes)
     turned = backend.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
-    if lobe.curved:  # light leaves at other points, so draw new inputs
+    if lobe.curved:  # subsurface light leaves at other points; draw new inputs
         batch = batch.altered(**lobe.random_inputs(rng, len(batch.wo)))
     if lobe.types.get("roughness") == "vector2":
         alpha = np.array(batch.inputs["roughness"])
-        alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # two alphas in at least every other pixel
+        alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # every other pixel has two different alphas
         batch = batch.altered(roughness=alpha)
     if "weight" in lobe.names:
         # Keep weights equal in each 2 x 2 square of pixels, because screen-space derivatives are

@@ -55,7 +55,7 @@ def diagnose_lobes(case: Case) -> Diagnosis:
 
 
 def wrong_layers(case: Case) -> list[str]:
-    """Titles of lobes in the material whose throughput is wrong when a lobe is judged alone."""
+    """Titles of the material's lobes whose throughput is wrong when each lobe is judged alone."""
     from mxeon.shaders.document.graphs import categories, inner_nodes
 
     used = categories(inner_nodes(case.evaluating.shader.document))
@@ -131,7 +131,7 @@ def without_effect(case: Case) -> list[str]:
     """Inputs that change neither the scattered light in any branch nor the emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
     defaults = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
-    for name in spec.names:  # normals and tangents have no default number
+    for name in spec.names:  # normals and tangents have no default value
         if name.endswith(("normal", "tangent")):
             defaults.setdefault(name, TANGENT if "tangent" in name else NORMAL)
     rows = [row for changes in spec.changes.values() for row in changes]
@@ -175,7 +175,7 @@ SENTENCE = Comparison("value", direct_values, lambda case: case.valued.value_can
 
 
 def diagnose_sentence(case: Case) -> Diagnosis:
-    """Find the reading of the sentence that the shader, or at least the graph of lobes, follows."""
+    """Find which formula for the sentence the shader, or at least the shader's graph, follows."""
     from mxeon.conformance.reference import Reference
 
     spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)

@@ -60,7 +60,7 @@ LEAST_LIGHT = 1e-3  # cosine of the light up to which faults of the cosine look 
 
 
 def defect(key: str, *names: str) -> Diagnosis:
-    """The diagnosis of the defect with a key of `mxeon.conformance.words.DEFECTS`."""
+    """A diagnosis of the defect with this key in `mxeon.conformance.words.DEFECTS`."""
     return Diagnosis((Cause(Kind.DEFECT, key, names),))
 
 
@@ -81,7 +81,7 @@ def explain(
     """Explain values by candidates, or by faults of the node's own model.
 
     - `candidates`: Functions that may have computed the values. The first is the node's own model.
-    - `measure`: The check's measurement, which is repeated for other inputs; None to skip this.
+    - `measure`: The check's measurement, to be repeated for other inputs; None to try no other inputs.
     """
     if infinite := not_finite(cases):  # NaN has no distance; explain only finite values
         finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
@@ -107,7 +107,7 @@ def explain(
         factor = float(products / squares) if squares else 1.0
         faults = (*faults, *exchanged, scaled_by(factor))
         distances = [_distance(short, own, fault, tolerance) for fault in faults]
-        best = int(np.argsort(distances, kind="stable")[0])  # argmin would find a NaN
+        best = int(np.argsort(distances, kind="stable")[0])  # argmin would choose a NaN
         least = distances.pop(best)
         rival = min([*models.values(), *distances])
         if least <= min(SAME * models[own.title], max(SAME * rival, tolerance.value)):
@@ -307,9 +307,9 @@ def _rescaled_candidates(case: Case) -> Sequence[Candidate]:
 
 
 def _transmittances(case: Case) -> Iterator[Compared]:
-    """Compare the light through a medium, then through a surface over a medium.
+    """Compare the light through a medium, alone and under a surface, with the transmittance.
 
-    The light is divided by the light without a medium and compared with the transmittance.
+    The light through a medium under a surface is divided by the light without the medium.
     """
     spec, evaluate = case.of(emission.MediumSpec), case.evaluating.evaluate
     [batch] = case.batches

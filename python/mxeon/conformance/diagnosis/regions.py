@@ -232,7 +232,7 @@ def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Error
     """
     batches = [each.batch for each in cases]
     rows = np.concatenate([tolerance.metric(*each[1:]) for each in cases])
-    # Each row has numbers, a limit that divides the numbers, and the regions below and above.
+    # Each row has the numbers of an input, a limit, and the regions below and above the limit.
     halves: list[tuple[Array, float, Region, Region]] = []
     for name, field in (("viewer", "wo"), ("light", "wi")):
         low, high = (

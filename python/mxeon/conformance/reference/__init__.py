@@ -113,9 +113,9 @@ class Reference(base.Host):
     ) -> ExpectedPicture:
         """The picture that is expected from the judged host.
 
-        The host draws inputs of lobes that the reference cannot compute, by `values`. Only every
-        `stride`-th row and column is computed. If there are `values`, but too many different
-        materials, the stride grows. Raise NotRun as `picture` does.
+        The function `values` draws, on that host, inputs of lobes that the reference cannot
+        compute. Only every `stride`-th row and column is computed. If there are `values`, but too
+        many different materials, the stride grows. Raise NotRun as `picture` does.
         """
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)

@@ -135,7 +135,7 @@ class Views:
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """Weighted sum of an argument over closures of a name; None if the tree has no such closure."""
+    """Weighted sum of an argument over closures called `name`; None if there is no such closure."""
     if tree is None:
         return None
     if tree.name == name:

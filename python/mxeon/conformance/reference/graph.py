@@ -54,7 +54,7 @@ class Graph(Nodes):
         self,
         document: mx.Document,
         points: ShadingPoints,
-        inputs: Mapping[str, ArrayLike] | None = None,  # values that replace the document's
+        inputs: Mapping[str, ArrayLike] | None = None,  # values that replace document values
         emits: bool = True,  # whether emission and opacity count
         measure: Measure | None = None,  # returns values of unsupported nodes; None to raise NotRun
     ) -> None:
@@ -146,7 +146,7 @@ class Graph(Nodes):
         def surface(bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0) -> Array:
             return np.asarray((bsdf.value + edf) * opacity, np.float64)
 
-        ports = ("bsdf", "opacity", "edf")  # the last inputs may not count
+        ports = ("bsdf", "opacity", "edf")  # opacity and emission may be ignored
         known["surface"] = ports[: 1 + self._emits + emits], surface
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
@@ -269,7 +269,7 @@ class Graph(Nodes):
         raise NotRun(f"reference: node {'/'.join(path[-1:])!r} has no input {name!r}")
 
     def _written(self, path: Path, name: str, port: mx.Input) -> Value:
-        """Value of an unconnected input; a color is in the document's space, a length in meters."""
+        """Value of an unconnected input, converted to the document's color space or to meters."""
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port

@@ -71,7 +71,7 @@ def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
     return np.asarray(np.concatenate(sums)[indices], np.float64)
 
 
-ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # caches
+ALBEDOS, SERIES = Recent[Array](8), Recent[Array | None](32)  # caches of albedos and series
 
 
 def _series(
@@ -230,7 +230,7 @@ class ShadingPoints:
         return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
-        """A geometric property by the name in MaterialX; raises NotRun for unknown names."""
+        """The geometric property with a MaterialX name; raises NotRun for unknown names."""
         known = {"Nworld": self.normal, "Tworld": self.tangent, "UV0": self.texcoord}
         known["Bworld"] = np.cross(self.normal, self.tangent)
         if (value := known.get(name)) is None:

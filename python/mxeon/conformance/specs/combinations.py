@@ -17,7 +17,8 @@ from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
-# The albedo of a mix of a sum over a base has derivatives of at most 1 and 2 by the two albedos.
+# The albedo of a mix of a sum over a base has derivatives of at most 1 and 2 with respect to the
+# two albedos.
 THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
 ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
 THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")

@@ -38,7 +38,7 @@ VALUE = sum_in(
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
 # If a cosine is at least 1/4, a rounding of the cosine grows 4 times in s / t, 3 times in a sine,
-# and 2 times in other factors, in all 9 times.
+# and 2 times in other factors, so 9 times in all.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
@@ -137,7 +137,7 @@ def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
 
 
 def _limited(function: Callable[..., Array], largest: float) -> Callable[..., Array]:
-    """The function, called with a roughness of at most `largest`; the last argument has inputs."""
+    """The function with roughness limited to `largest`; the last argument holds the inputs."""
 
     def limited(*arguments: Any) -> Array:
         *directions, inputs = arguments

@@ -117,7 +117,7 @@ power_error = spec.POWER.error(_powers)
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class EmissionSpec(spec.RowSpec[emissions.Value]):
-    """An EDF node, or a node that combines EDFs; `row` has its equation."""
+    """An EDF node, or a node that combines EDFs, with the equation of `row`."""
 
     requires = Ability.EMISSION
     coarse = 4  # radiance depends only on the view's cosine, so few pixels are enough
@@ -172,7 +172,7 @@ class ConeSpec(EmissionSpec):
         return inputs | {INNER: float32(inner), OUTER: float32(outer)}
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views, views in falloffs or close to the edges of cones, and rotated cones."""
+        """Random views, views in the falloff or close to the edge of a cone, and rotated cones."""
         rng, count = generator(), counts.few
         inputs = self.random_inputs(rng, count)
         inputs[INNER][0] = inputs[OUTER][0] = 0.0  # a cone that contains only its axis
@@ -319,7 +319,7 @@ SLAB = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MediumSpec(spec.RowSpec[media.Value]):
-    """A VDF node, or a node that combines VDFs; `row` has its equation."""
+    """A VDF node, or a node that combines VDFs, with the equation of `row`."""
 
     requires = Ability.MEDIUM
 

@@ -23,7 +23,7 @@ from mxeon.models.nodes.node import Scattering
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
 WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrated lobes
-# Shares of the light in R, in TT, in TRT and in all higher orders that come from the viewer's side.
+# Fraction of the light that comes from the viewer's side, for R, TT, TRT, and all higher orders.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])
 STEP = 1e-6  # step of an angle, in radians, for finite differences
 LEAST = 0.01  # errors are relative to the larger of this number and the value
@@ -53,8 +53,8 @@ ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all later operations
 def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Term, ...]:
     """Error terms of pi f for lobes of at least these widths; each angle has `angle` roundings.
 
-    The largest derivative by an angle is REACH / sqrt(variance) for log M, and 1 / (SCALE scale)
-    for log N.
+    The largest derivative with respect to an angle is REACH / sqrt(variance) for log M, and
+    1 / (SCALE scale) for log N.
     """
     slope = REACH / math.sqrt(variance) + 1.0 / (SCALE * scale)
     lobe = f"v {variance:g} and s {scale:g}"
@@ -103,7 +103,7 @@ class Region:
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
 # fmt: off
-# Regions by the key of the check that covers a region.
+# Regions. The key of a region is also the key of the check that covers the region.
 REGIONS = {
     "each_lobe": Region("Each lobe matches the equations: R, TT, and TRT with all higher orders.",
                         tints=LOBE_TINTS, form=UNIFORM),
@@ -147,7 +147,7 @@ class HairSpec(PbrSpec):
         return np.asarray(front * near + (1.0 - front) * far)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by max(value, LEAST) plus absolute derivatives by the four angles."""
+        """Divide values by max(value, LEAST) plus absolute derivatives along the four angles."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:

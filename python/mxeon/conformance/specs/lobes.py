@@ -18,7 +18,7 @@ from mxeon.models.nodes.node import ABSORBING, COLORED, Inputs, PbrNode, Scatter
 from mxeon.shaders.nodes import material_text
 
 COUNTS = Counts(pairs=1 << 12, few=1 << 10, diagnosed=1 << 11)
-LEAST_VIEW = 0.02  # least cosine of views whose values are integrated
+LEAST_VIEW = 0.02  # smallest cosine of views whose values are integrated
 WEIGHT = spec.Input("weight", change=0.5, materials=(1.0, 0.5))
 ROUGHNESS = spec.Input(
     "roughness", low=samples.LEAST_SHEEN, edges=(0.01, 0.05, 1.0), change=0.3, materials=(0.8, 0.4)
@@ -139,7 +139,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
     def lit(self, views: Batch, count: int) -> tuple[Batch, Array]:
         """Each view, lit from all directions of a quadrature, with the weights of the directions.
 
-        The weighted sum of pi f cos over a view's directions is its directional albedo.
+        The weighted sum of pi f cos over a view's directions is the view's directional albedo.
         """
         wi, weights = self.nodes(views.wo, dict(views.inputs), count)
         pairs = views.where(np.repeat(np.arange(len(wi)), wi.shape[1]))
@@ -171,7 +171,7 @@ class PbrSpec(ScatteringSpec):
 
     counts: Counts = COUNTS
 
-    least_cosine: float = 0.0  # least cosine of views whose albedos are compared
+    least_cosine: float = 0.0  # smallest cosine of views whose albedos are compared
 
     @property
     def bounded(self) -> tuple[spec.Input, ...]:
@@ -217,7 +217,7 @@ class PbrSpec(ScatteringSpec):
         return Batch(wo, wi, inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Use Gauss nodes in the cosine, dense at horizon and normal, and uniform azimuths.
+        # Use Gauss nodes in the cosine, dense at the horizon and the normal, and uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)

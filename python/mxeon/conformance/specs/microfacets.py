@@ -27,15 +27,15 @@ from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, 
 from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # the models are slow
-LEAST_ALPHA = 1e-3  # least alpha of random pairs
-LEAST_STRETCHED = 0.05  # least alpha and cosine of anisotropic lobes with measured albedos
+LEAST_ALPHA = 1e-3  # smallest alpha of random pairs
+LEAST_STRETCHED = 0.05  # smallest alpha and cosine of anisotropic lobes with measured albedos
 LEAST_INVERTED = 0.1  # smallest IOR of a dielectric before the IOR is inverted
 LEAST_INDEX = 1.05  # smallest IOR above 1 in the domain of the fit by tools/fits/ggx_cosine.py
 COSINE_STEP = 2.0**-18  # largest difference between wo . wh and wi . wh
 RIM_COLOR = 0.05  # smallest |wo + wi|, unless a channel of color90 is at least 0.05
 # Smallest alpha of lobes with rotated tangents. Roundings of a tangent are divided by alpha.
 LEAST_TANGENT_ALPHA = 0.05
-LEAST_TANGENT_COSINE = 0.1  # least cosine with rotated tangents
+LEAST_TANGENT_COSINE = 0.1  # smallest cosine with rotated tangents
 COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which Fresnel curves are tested for values below 0
 
 # fmt: off
@@ -82,19 +82,19 @@ BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
 
 # Largest errors of the shaders' fits; scripts in tools/fits measure these errors.
-ESS_FIT = 5e-4  # error of E_ss, by ggx_albedo.py
-SMOOTH_ESS_FIT = 5.3e-5  # error of E_ss of smooth lobes at cosines from 0.05, by ggx_albedo.py
-# Error of a compensated value due to the fit of E_ss, by ggx_albedo.py. The errors of values above
-# 1 are relative errors.
+ESS_FIT = 5e-4  # error of E_ss (ggx_albedo.py)
+SMOOTH_ESS_FIT = 5.3e-5  # error of E_ss of smooth lobes at cosines from 0.05 (ggx_albedo.py)
+# Error of a compensated value due to the fit of E_ss (ggx_albedo.py). The errors of values above 1
+# are relative errors.
 ESS_VALUE_FIT = 1.14e-3
-METAL_FIT = 4.6e-4  # error of F_ss of a metal, by fresnel_average.py
-# Error of a compensated value for an error of 1 in F_ss, by ggx_albedo.py. The errors of values
-# above 1 are relative errors.
+METAL_FIT = 4.6e-4  # error of F_ss of a metal (fresnel_average.py)
+# Error of a compensated value for an error of 1 in F_ss (ggx_albedo.py). The errors of values above
+# 1 are relative errors.
 COMPENSATED = 0.6
-LOBE_FIT = 3.2e-3  # error of the albedo of GGX with a Fresnel curve, by ggx_cosine.py
-INSIDE_FIT = 2.8e-2  # error of the albedo of a dielectric with an IOR below 1, by ggx_inside.py
-PASSING_FIT = 3.4e-2  # error of the share of light that passes from inside, by ggx_inside.py
-DIP_FIT = 5.9e-3  # additional error of an albedo with the strongest dip, by ggx_cosine.py
+LOBE_FIT = 3.2e-3  # error of the albedo of GGX with a Fresnel curve (ggx_cosine.py)
+INSIDE_FIT = 2.8e-2  # error of the albedo of a dielectric with an IOR below 1 (ggx_inside.py)
+PASSING_FIT = 3.4e-2  # error of the share of light that passes from inside (ggx_inside.py)
+DIP_FIT = 5.9e-3  # additional error of an albedo with the strongest dip (ggx_cosine.py)
 LEAST_ESS = 1.0 - math.log(2.0)  # smallest E_ss, at alpha 1 along the normal
 
 
@@ -110,8 +110,8 @@ def sum_over(directions: int) -> Term:
 HALF_TEXEL = math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS)
 TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, half of one away")
 
-# Errors of the fits for two alphas, by ggx_anisotropic.py: the relative error of E_ss, and the
-# error of a dielectric's albedo. The second row limits the ratio of alphas and the view's cosine.
+# Errors of the fits for two alphas (ggx_anisotropic.py): the relative error of E_ss, and the error
+# of a dielectric's albedo. The second row limits the ratio of alphas and the view's cosine.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
 LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
 ANISOTROPIC = Term(ANISOTROPIC_FIT, "the fit of E_ss of two alphas")
@@ -593,7 +593,7 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random inputs with dielectrics of IOR 1 or more; if `edged`, some films have equal IORs.
+        """Random inputs with dielectrics of IOR 1 or more; if `edged`, some films match the IOR.
 
         For IORs below 1, averages over few cosines do not resolve the curve at the critical angle.
         """
@@ -624,7 +624,7 @@ class FilmSpec(FacetSpec):
         return batch.where(_steep(batch))
 
     def stretched(self, counts: Counts) -> tuple[Batch, Array]:
-        """Random views of anisotropic lobes under thin films, with their albedos."""
+        """Random views of anisotropic lobes under thin films, and the albedo at each view."""
         batch, rng = film_views(self, BRUSHED), generator()
         alpha = rounded(LEAST_STRETCHED ** rng.random((2, BRUSHED.size)))
         batch = batch.altered(roughness=alpha, weight=1.0)

@@ -18,7 +18,7 @@ BOUNDED = (
     replace(lobes.ROUGHNESS, beyond=(0.0, 1e-3, 2.0), ends=(0.01, 1.0)),
 )
 INPUTS, ZELTNER_INPUTS = ((lobes.WEIGHT, lobes.COLOR, each, lobes.NORMAL) for each in BOUNDED)
-FIT_COSINE = 1e-4  # least cosine in the domains of the albedo fits
+FIT_COSINE = 1e-4  # smallest cosine in the domains of the albedo fits
 EXPONENT = 1.0 / samples.LEAST_SHEEN  # largest exponent of the sine in Conty and Kulla's sheen
 
 ZELTNER_VALUE = sum_of(
@@ -27,7 +27,7 @@ ZELTNER_VALUE = sum_of(
 )
 CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
 ZELTNER_ALBEDO = ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
-LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings divided by twice the least roughness
+LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings divided by twice the smallest roughness
 
 
 def conty_kulla_value(logarithm: float) -> Tolerance:
@@ -51,7 +51,8 @@ def power_error(host: Host) -> float:
     """
     rng = samples.generator()
     exponent = samples.LEAST_SHEEN ** -rng.random(spec.ARGUMENTS)
-    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))  # a uniform power
+    # The power sine^exponent is uniformly distributed.
+    sine = samples.float32(rng.random(spec.ARGUMENTS) ** (1.0 / exponent))
     exponent = samples.float32(exponent)
     factor = (2.0 + exponent) / 8.0
     scale = np.maximum(1.0, factor * sine**exponent)

@@ -18,7 +18,7 @@ from mxeon.shaders.scene import BACK, SIDE, VIEW, Scene, local_directions, spher
 LEAST_COSINE = 1e-6  # MaterialX's M_FLOAT_EPS
 COSINES = np.linspace(-1.0, 1.0, 129)
 SCENES = tuple(replace(scene, size=32) for scene in (SIDE, BACK))  # scenes of a unit sphere
-LEAST_HEIGHT = 0.3  # least z of normals, which excludes pixels near the rim
+LEAST_HEIGHT = 0.3  # smallest z of normals, which excludes pixels near the rim
 # Materials in which light spreads over the sphere, and materials in which light hardly spreads.
 MATERIALS: tuple[Values, ...] = (
     {"color": (0.9, 0.6, 0.3), "radius": (0.5, 0.2, 0.05), "anisotropy": -0.5},

@@ -69,8 +69,8 @@ MEAN = sum_of(
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
-# A reflecting lobe of albedo E over a transmitting lobe passes (1 - E)^2 of the light. The
-# derivative of this share by E is at most 2 in magnitude.
+# A reflecting lobe of albedo E over a transmitting lobe passes the fraction (1 - E)^2 of the light,
+# whose derivative with respect to E is at most 2 in magnitude.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
@@ -181,7 +181,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return self._reference(batch, "opacity" if opacity else "transmission")
 
     def clear(self, batch: Batch) -> Batch:
-        """Replace the materials of a batch by glass, but keep their roughness and index."""
+        """Replace the materials of a batch by glass of the same roughness and IOR."""
         finish = {name: batch.inputs[name] for name in self.finish}
         return replace(batch, inputs=finish).altered(**self.glass)
 

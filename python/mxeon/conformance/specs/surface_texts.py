@@ -86,7 +86,7 @@ class SentenceSpec(ValueSpec):
 
 @dataclass(frozen=True)
 class Text:
-    """A specification: its name, the node that implements it, and its model."""
+    """The specification of a surface shader: a name, the implementing node, and a model."""
 
     name: str
     node: str
@@ -146,7 +146,7 @@ PLASTIC: Values = {"base": 1.0, "base_color": (0.8, 0.7, 0.6), "sheen": 0.0, "me
 BARE: Values = {**PLASTIC, "specular": 0.0}
 METAL: Values = {"metalness": 1.0, "sheen": 0.0, "base": 0.8, "base_color": (0.9, 0.7, 0.4)}
 CLEAR: Values = {"metallic": 0.0}
-METAL_COLOR = Input("diffuseColor", "color3", high=0.95)  # a white metal has an infinite index
+METAL_COLOR = Input("diffuseColor", "color3", high=0.95)  # a white metal has an infinite IOR
 # fmt: off
 SENTENCES = (
     OPENPBR.says("diffuse", "Glossy-diffuse", "The diffuse lobe is EON, scaled by base_weight.", fixed=MATTE,

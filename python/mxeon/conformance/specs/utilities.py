@@ -45,7 +45,7 @@ INPUTS = {
 # fmt: on
 
 # The aspect ratio is a square root of 1 minus a number of at most 0.98, so a rounding of the number
-# is divided by 2 (1 - 0.98). Errors are absolute, because the least alpha is 1e-8.
+# is divided by 2 (1 - 0.98). Errors are absolute, because the smallest alpha is 1e-8.
 ALPHA = sum_in(
     Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
 )
@@ -88,7 +88,8 @@ _power_error = spec.POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWE
 _logarithm_error = spec.LOGARITHM.error(
     lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
 )
-# For each node, the error of an engine's function times the output's derivative by the function.
+# For each node, the error of an engine's function, times the derivative of the output with respect
+# to the function.
 # fmt: off
 ENGINE = {
     "chiang_hair_roughness": EngineError("the engine's pow(), times 2 x 3.7 / 5.24", _power_error, 1.5),
@@ -111,7 +112,7 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
     @property
     def names(self) -> tuple[str, ...]:
-        # A roughness depends only on the scale of the same lobe: `roughness_TT` on `scale_TT`.
+        # A roughness depends only on the scale of the same lobe, such as `scale_TT`.
         suffix = self.output.removeprefix("roughness")
         names = self.row.inputs
         return tuple(x for x in names if not x.startswith("scale_") or x.endswith(suffix))
