@@ -85,7 +85,7 @@ NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
     "generalized_schlick": "schlick",
-    # In reversed order, the first mode of a node overwrites its later modes.
+    # The rows are reversed, so that the first mode of a node overwrites the node's later modes.
     **{row.category: row.name for row in reversed((*PBR_NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 

@@ -424,7 +424,7 @@ def base_under_varnish(
     rho: Array,
     r: Array,
 ) -> Array:
-    """The bracket in equation (1), the BRDF of EON below the interface; at `ior` 1, exactly EON.
+    """BRDF of EON below the interface, the bracket in equation (1); at `ior` 1, exactly EON.
 
     The product k(mu_o) k(mu_i) is expanded in powers of W. This saves multiplications for a single
     material, since the coefficients of the powers do not depend on directions.
@@ -444,7 +444,7 @@ def base_under_varnish(
 def varnish_albedo(
     mu: Array, curves: Curves, ior: float | Array, means: Means, rho: Array, r: Array
 ) -> Array:
-    """Directional albedo of EON under a varnish: equation (2)."""
+    """Directional albedo of EON under a varnish, by equation (2) in the docstring of this file."""
     E_single, D, b = curves
     _, p, H = mean_parts(mu, b, ior, r)
     A, W = formulas.fon_af(r), formulas.eon_multiple_ratio(rho, r)

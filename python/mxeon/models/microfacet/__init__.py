@@ -170,7 +170,7 @@ def _missing_by_views(rows: Array) -> Array:
 
 
 def missing_of(wo: Array, roughness: Array) -> Array:
-    """(1 - E_ss) / E_ss from valid float64 arrays, components first."""
+    """(1 - E_ss) / E_ss for valid float64 arrays, with components on the first axis."""
     isotropic = missing_light(wo[2], ggx.mean_alpha(roughness))
     if array_namespace(wo, roughness) is arrays.NUMPY:
         anisotropic = roughness[0] != roughness[1]
@@ -202,11 +202,11 @@ class Lobe:
 
     factor: Callable[[Pair], Array | float] = compensation
     visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i)
-    alpha: Callable[[Array], Array] = lambda roughness: roughness  # alpha of the input roughness
+    alpha: Callable[[Array], Array] = lambda roughness: roughness  # roughness to alpha
     scale: float = 1.0
 
     def value(self, pair: Pair, wh: Array) -> Array:
-        """BRDF of a block, shape (C, ...)."""
+        """BRDF for a block of directions, shape (C, ...)."""
         F = pair.curve.at(pair.cosine, **pair.material)
         lobe = self.scale * ggx.ndf(wh, pair.roughness) * self.visibility(pair)
         f: Array = F * lobe * self.factor(pair)
