@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts a view to the part of an address after "#" and back. Only fields that differ from the
-// first view are written; unreadable fields keep their first value.
+// first view are written. Unreadable fields keep the value of the first view.
 
 import type { PageData, Vec3 } from "./data";
 import {
@@ -21,7 +21,7 @@ interface Codec<T> {
   readonly read: (text: string, first: T) => T | undefined;
 }
 
-const DIGITS = 5; // digits of numbers in an address; more would not be visible
+const DIGITS = 5; // digits of numbers in an address; more digits would not be visible
 
 function short(value: number): string {
   return String(Number(value.toPrecision(DIGITS)));

@@ -19,9 +19,9 @@ export interface ModelSource {
   readonly title: string; // "energy-preserving Oren-Nayar (EON)"
   readonly group: string; // heading in the selection list
   readonly model: ModelName;
-  // The intended model: `model` itself, unless this is a renderer's variant.
+  // The intended model, which differs from `model` for a variant of a renderer.
   readonly meant: ModelName;
-  readonly pages: readonly string[]; // names of the pages about its defects
+  readonly pages: readonly string[]; // names of the pages about defects
 }
 
 /** A public input of a generated shader. */
@@ -32,10 +32,10 @@ export interface Port {
   readonly value: number | boolean | readonly number[] | null; // null for a filename
   readonly path: string; // name path of the input in the document
   readonly label: string; // uiname, or the name split into words
-  readonly min: number | null; // uimin or uisoftmin, for vectors its first component
+  readonly min: number | null; // uimin or uisoftmin; the first component for vectors
   readonly max: number | null;
   readonly image: Texels | null; // null unless the type is filename
-  readonly shown: boolean; // whether readers may want to change it
+  readonly shown: boolean; // whether readers may want to change the input
 }
 
 /** An image in base64, RGBA: texels have 8 bits per channel, from the bottom row (v = 0) up. */
@@ -57,11 +57,11 @@ export interface ShaderSource {
   readonly inputs: readonly Port[];
   /** Uniforms that the page's own controls set; "" for missing ones. */
   readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };
-  readonly meant: Models | null; // intended models; null unless it is one rough diffuse node
+  readonly meant: Models | null; // intended models of one rough diffuse node, otherwise null
   readonly actual: Models | null; // the model of this library's code, according to the diagnosis
   readonly document: string; // MaterialX text for the copy button
-  readonly pages: readonly string[]; // names of the pages about its defects
-  readonly reference: ReferenceTable | null; // null if no model covers all of its lobes
+  readonly pages: readonly string[]; // names of the pages about defects
+  readonly reference: ReferenceTable | null; // null if no model covers all lobes
   readonly checked: Checked | null; // null if the check did not run
 }
 
@@ -73,8 +73,8 @@ interface Checked {
 
 /** Float64 values of the reference models for a material with its own inputs. */
 export interface ReferenceTable {
-  readonly direct: readonly number[]; // pi f cos(theta_i) for PageData.pairs, 3 each
-  // Light reflected in white surroundings, for PageData.views, 3 each.
+  readonly direct: readonly number[]; // pi f cos(theta_i), 3 channels per pair of PageData.pairs
+  // Light reflected in white surroundings, three channels for each of PageData.views.
   readonly white: readonly number[];
   readonly bounds: { readonly direct: number; readonly white: number }; // tolerances for shaders
   readonly forms: readonly ShaderForm[]; // other functions that shaders may implement
@@ -85,7 +85,7 @@ export interface ReferenceTable {
  */
 export interface ShaderForm {
   readonly title: string;
-  readonly permitted: boolean; // the specification permits it
+  readonly permitted: boolean; // whether the specification permits the form
   readonly direct: readonly number[];
   readonly white: readonly number[];
 }

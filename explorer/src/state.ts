@@ -20,7 +20,7 @@ export type SideName = "left" | "right";
 /** One of the two materials to compare. */
 export interface Side {
   readonly source: string; // id of a Source
-  readonly flag: boolean; // energy_compensation, if the source has it
+  readonly flag: boolean; // energy_compensation, if the source has this input
   readonly sampler: Sampler; // how path tracing samples a model; see SAMPLERS in stage/texts.ts
 }
 
@@ -45,13 +45,13 @@ export interface State {
    */
   readonly azimuth: number; // [-180, 180]
   readonly elevation: number; // degrees above the horizon, [-90, 90]
-  readonly light: number; // irradiance over pi of a surface facing the light; 0 switches it off
+  readonly light: number; // irradiance / pi of a surface facing the light; 0 switches the light off
   readonly surroundings: Surroundings;
-  readonly exposure: number; // stops
+  readonly exposure: number; // in stops
   readonly color: Readonly<Triple>; // rho, linear, each in [0, 1]
-  readonly roughness: number; // r, or sigma in radian; in [0, 1]
+  readonly roughness: number; // r, or sigma in radians, in [0, 1]
   readonly wanted: Readonly<Triple>; // requested albedo, from which the color follows
-  // Whether `wanted` is the average albedo instead of the one at normal incidence.
+  // Whether `wanted` is the average albedo instead of the albedo at normal incidence.
   readonly average: boolean;
   readonly keep: boolean; // whether `color` follows from `wanted`
   readonly paths: boolean; // whether paths are traced instead of using the shader's own lighting

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdict on a side: which model it is, whether that is the intended one, and the difference.
+// The verdict on a side: which model the side implements, whether the model is intended, and the
+// difference.
 //
 // No side is called correct before this browser has read back its shader's values.
 
@@ -39,7 +40,7 @@ export interface Evidence {
   readonly able: boolean; // whether the browser can draw
   /** Whether the shader has the values of its claimed model; null until known. */
   readonly confirmed: boolean | null;
-  readonly errors: Errors | null; // null until known, and without a reference
+  readonly errors: Errors | null; // null until known, or if there is no reference
   readonly failure: string; // compiler message if the shader does not compile
 }
 
@@ -131,7 +132,7 @@ function byReference(source: ShaderSource, { able, errors }: Evidence): Verdict 
   const title = places.find(({ form }) => form)?.form?.title;
   const off = `Off by up to ${parts.join(", ")}`;
   const named = title ? `: ${title}` : "";
-  // The page has no permitted forms of layers, but each of their lobes may have one.
+  // The page has no permitted forms of layers, but each lobe of a layer may have a permitted form.
   if (forms.length === 0) {
     const hint = "Open each lobe to see which part is allowed.";
     return { kind: "differs", badge: "differs", text: `${off}. ${hint}` };

@@ -22,7 +22,7 @@ export function albedoDirQuadrature(
   const thetaO = Math.acos(mu);
   const rest = PI / 2.0 - thetaO;
   const wo: Triple = [Math.sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu];
-  // Polar angles and weights: below theta_o, where the nodes crowd, and above it.
+  // Polar angles and weights. Below theta_o, the angles crowd towards theta_o.
   const polar: [number, number][] = [
     ...x.map((u, k): [number, number] => [
       thetaO * (1.0 - u ** 5),

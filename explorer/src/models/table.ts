@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The models and known defects, one row each as in python/mxeon/models/table.py. Their functions
-// are translated from the page's GLSL to float64.
+// The models and known defects, with the rows of python/mxeon/models/table.py. Functions are
+// translated from the GLSL of the page to float64.
 
 import * as glsl from "glsl:models";
 import type { Vec3 } from "../data";

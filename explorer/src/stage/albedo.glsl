@@ -4,21 +4,21 @@
 //
 // The integrand is smooth except at the polar angle of wo, where the larger cosine switches, and at
 // the azimuth where s changes sign. Each smooth rectangle has 16 by 16 Gauss-Legendre nodes. Angles
-// are represented by the tangents of their halves: cosines and sines then are quotients, which is
-// more precise than drivers' trigonometric functions.
+// are tangents of half angles, so that cosines and sines are quotients, which are more precise than
+// drivers' trigonometric functions.
 
 uniform vec3 stage_rho;
 uniform float stage_parameter;
 
 out vec4 stage_albedo;
 
-// Half of the 16 nodes and weights of [-1, 1]; the others are their mirror images.
+// Half of the 16 nodes and weights on [-1, 1]. The other half are mirror images.
 const float NODES[8] = float[8](0.0950125098, 0.2816035508, 0.4580167777, 0.6178762444,
                                 0.7554044084, 0.8656312024, 0.9445750231, 0.9894009350);
 const float WEIGHTS[8] = float[8](0.1894506105, 0.1826034150, 0.1691565194, 0.1495959888,
                                   0.1246289713, 0.0951585117, 0.0622535239, 0.0271524594);
 
-// The node and its weight in [low, high].
+// A node in [low, high], and the weight of the node.
 vec2 stage_node(int k, float low, float high)
 {
     float node = k < 8 ? -NODES[k] : NODES[k - 8];
@@ -31,7 +31,7 @@ vec3 stage_angle(float t)
     return vec3(1.0 - t * t, 2.0 * t, 2.0) / (1.0 + t * t);
 }
 
-// Integral over half of the hemisphere, y > 0; tangents of half the polar angles in [low, high].
+// Integral over half of the hemisphere, y > 0. Tangents of half polar angles are in [low, high].
 vec3 stage_zone(vec3 wo, float low, float high, vec3 rho, float r)
 {
     vec3 sum = vec3(0.0);
@@ -56,7 +56,7 @@ void main()
     vec3 wo = vec3(S, 0.0, mu);
     float tangent = S / (1.0 + mu);
     vec3 sum = vec3(0.0);
-    // A loop, so that compilers inline the model only once.
+    // The loop makes compilers inline the model only once.
     for (int zone = 0; zone < 2; ++zone) {
         float low = zone == 0 ? 0.0 : tangent;
         sum += stage_zone(wo, low, zone == 0 ? tangent : 1.0, stage_rho, stage_parameter);

@@ -2,12 +2,12 @@
 // Rays through the pixels of the picture.
 
 uniform mat3 stage_camera; // The columns are the axes of the viewer's frame, in the world frame.
-uniform vec3 stage_eye; // Eye position in the world frame; only perspective cameras use it.
-uniform vec4 stage_frame; // Width, height, the sphere's diameter, focal length; in pixels.
+uniform vec3 stage_eye; // Eye position in the world frame, for perspective cameras.
+uniform vec4 stage_frame; // Width, height, diameter of the sphere and focal length, in pixels.
 // Offset in pixels; 0 in the first frame, whose samples are the pixel centers.
 uniform vec2 stage_jitter;
 
-// Twice the distance from the center of the frame in pixels: odd integers without jitter.
+// Twice the distance in pixels from the center of the frame. It is an odd integer without jitter.
 vec2 stage_from_center()
 {
     return 2.0 * (gl_FragCoord.xy + stage_jitter) - stage_frame.xy;

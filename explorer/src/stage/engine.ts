@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The passes of a frame in one WebGL2 context: geometry, shadow, both materials, picture, screen.
 //
-// A pass is drawn again only if its inputs change: moving the wipe redraws no material.
+// A pass is drawn again only if its inputs change, so moving the wipe redraws no material.
 
 import type { PageData, ReferenceTable, ShaderSource, Source, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";
@@ -70,7 +70,7 @@ export class Engine {
   private readonly programs: gpu.Programs;
   private readonly tables: Record<SideName, gpu.Target>;
   private readonly pixel: gpu.Target; // target for a single value
-  private readonly upright: WebGLTexture; // normal at the point of that value
+  private readonly upright: WebGLTexture; // normal for a single value: the z axis
   private readonly one: gpu.Target; // geometry of a single pixel
   private readonly drawn = new Map<string, string>(); // inputs of each pass when it was last drawn
   private targets: Targets;
@@ -144,7 +144,7 @@ export class Engine {
     const text = this.texts.geometry(state.shape);
     const program = this.isPending("", text) ? null : this.programs.get(text);
     if (!program) return null;
-    // Draw a frame of one pixel, shifted to the given place.
+    // Draw a frame of one pixel, shifted to the given position.
     const uniforms = { ...this.uniformsOf(state, size, 0), stage_jitter: [x, y] };
     gpu.drawPass(this.gl, program, this.one, [1, 1], uniforms);
     const read = (each: number) => gpu.readPixels(this.gl, this.one, each, [0, 0, 1, 1]);

@@ -10,13 +10,13 @@ layout(location = 2) out vec4 stage_detail; // Texture coordinates, opacity.
 // Angle of (x, y) from the x axis as a fraction of a full turn, in [-0.5, 0.5].
 float stage_turn(float y, float x)
 {
-    float radius = max(length(vec2(x, y)), 1.0e-30); // The angle is undefined at a pole: return 0.
+    float radius = max(length(vec2(x, y)), 1.0e-30); // At a pole, the undefined angle becomes 0.
     float quarter = 0.25 * oren_nayar_angle(abs(y) / radius, abs(x) / radius);
     return (y < 0.0 ? -1.0 : 1.0) * (x < 0.0 ? 0.5 - quarter : quarter);
 }
 
-// The sphere under the pixel in units of its radius. With integers below 2^24 the difference under
-// the root is exact in float32, which keeps the rim sharp.
+// The point of the sphere at the pixel, in units of the radius. For integers below 2^24, the
+// difference under the root is exact in float32, which keeps the rim sharp.
 void stage_exact_sphere()
 {
     vec2 at = stage_from_center();

@@ -21,7 +21,7 @@ import {
 } from "./scenes";
 
 export interface Pick {
-  readonly wo: Triple; // unit vector in the local frame, where the normal is +z, in the x-z plane
+  readonly wo: Triple; // unit vector in the x-z plane of the local frame, where the normal is +z
   readonly wi: Triple; // unit vector to the light; z may be <= 0
   readonly normal: Triple;
 }
@@ -62,7 +62,8 @@ function fitted({ clientWidth, clientHeight }: HTMLCanvasElement): Size {
 
 /** A stage on a canvas; null unless WebGL2 can draw into float32 frames. */
 export function createStage(canvas: HTMLCanvasElement, data: PageData): Stage | null {
-  // Resize the canvas before creating its context; later it would have to wait for the driver.
+  // Resize the canvas before creating its context, because resizing it later would wait for the
+  // driver.
   [canvas.width, canvas.height] = fitted(canvas);
   const gl = canvas.getContext("webgl2", ATTRIBUTES) as WebGL2RenderingContext | null;
   if (!gl?.getExtension("EXT_color_buffer_float")) return null;
@@ -222,7 +223,7 @@ export class Stage {
   }
 
   private readonly lose = (event: Event): void => {
-    event.preventDefault(); // without this, the browser never restores it
+    event.preventDefault(); // otherwise, the browser never restores the context
     this.engine = null;
     this.fence = null;
     this.tell({ kind: "lost" });
@@ -277,8 +278,8 @@ export class Stage {
     const full = this.fit();
     if (this.index === 0) this.pace.begin(full, state.paths);
     const size = this.drawnSize();
-    // While moving, the browser enlarges the picture: a software driver needs longer for that than
-    // for the material.
+    // While the picture moves, the browser enlarges the canvas, because a software driver needs
+    // longer to enlarge it than to draw the material.
     const canvas = this.pace.moving ? size : full;
     const done = engine.frame(state, size, full, this.sized(canvas), this.index);
     this.tellErrors(engine);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance of the part with the material: the model's value for the light, plus its albedo times
-// the surroundings. This text follows the model's functions and the definitions of STAGE_VALUE and
-// STAGE_ALBEDO.
+// Radiance of the part with the material: the model's value times the light, plus the model's
+// albedo times the surroundings. This text follows the model's functions and the definitions of
+// STAGE_VALUE and STAGE_ALBEDO.
 
 uniform highp sampler2D stage_surface;
 uniform highp sampler2D stage_place;
@@ -13,14 +13,14 @@ uniform mat3 stage_camera;
 uniform vec4 stage_frame;
 uniform vec3 stage_light_view; // Unit vector towards the light, in the viewer's frame.
 uniform vec3 stage_eye_view;
-uniform float stage_intensity; // Irradiance over pi of a surface facing the light.
+uniform float stage_intensity; // Irradiance of a surface facing the light, divided by pi.
 uniform vec3 stage_rho;
 uniform float stage_parameter; // Roughness or sigma.
 
 out vec4 stage_radiance;
 
-// Both directions in the frame of the normal, with the viewer in the x-z plane. The sine of a view
-// almost along the normal comes from a cross product: a difference from the normal would cancel.
+// Both directions in the frame of the normal, with the viewer in the x-z plane. The sine of the
+// view is the length of a cross product, because a difference from the normal would cancel.
 void stage_local(vec3 normal, vec3 view, vec3 light, out vec3 wo, out vec3 wi)
 {
     vec3 beside = cross(normal, view);
@@ -31,7 +31,7 @@ void stage_local(vec3 normal, vec3 view, vec3 light, out vec3 wo, out vec3 wi)
     wi = vec3(dot(light, cross(y, normal)), dot(light, y), dot(light, normal));
 }
 
-// Interpolate the table of albedos linearly between its angles.
+// Interpolate the table of albedos linearly between angles.
 vec3 stage_tabulated(float mu)
 {
     float at = clamp(mu, 0.0, 1.0) * 255.0;

@@ -54,7 +54,7 @@ export function shaderUniforms(
   eye: Vec3,
 ): Uniforms {
   const inputs: Record<string, UniformValue> = Object.fromEntries(valuesOf(source, state, side));
-  // Scales of images in an atlas: 1, because none of them is packed into one.
+  // Scales of images in an atlas are 1, because no image is packed into an atlas.
   for (const [, name = ""] of source.pixel.matchAll(ATLAS)) inputs[name] = [1, 1];
   for (const { name, image } of source.inputs) {
     if (image) inputs[name] = textures.image(image);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the resolution of a picture: full at rest, and as fine as time permits while it moves.
+// Chooses the resolution of a picture: full at rest, and as fine as time permits in motion.
 
 import type { Size } from "./paths";
 
 const SMOOTHING = 8; // maximum number of frames averaged for a picture at rest
-const LEAST_SMOOTHING = 2; // minimum number of these frames
-const SMOOTHING_BUDGET = 1000; // milliseconds for all of these frames
+const LEAST_SMOOTHING = 2; // minimum number of averaged frames
+const SMOOTHING_BUDGET = 1000; // milliseconds for all averaged frames
 const MOVING_BUDGET = 24; // milliseconds per frame while something moves: 30 frames per second
 const PATHS_BUDGET = 120; // milliseconds per pass of paths
 const REST = 220; // milliseconds without a change until the picture is at rest
@@ -20,7 +20,7 @@ export class Pace {
   private timer = 0;
   private share = 1; // fraction of the full resolution
   private latest = 0; // milliseconds of the latest frame
-  private rate = 0; // milliseconds per pixel of that frame
+  private rate = 0; // milliseconds per pixel of the latest frame
 
   /** `rest` is called when the picture comes to rest. */
   constructor(private readonly rest: () => void) {}
@@ -44,7 +44,7 @@ export class Pace {
 
   /** Choose the resolution for the next frames. */
   begin([width, height]: Size, paths: boolean): void {
-    // Keep the size during a drag, unless it is still too slow.
+    // Keep the size during a drag, unless frames still take too long.
     if (this.moving && this.share < 1 && this.latest < 1.5 * MOVING_BUDGET) return;
     const budget = this.moving ? MOVING_BUDGET : paths ? PATHS_BUDGET : Infinity;
     const affordable = this.rate ? Math.sqrt(budget / (this.rate * width * height)) : 1;

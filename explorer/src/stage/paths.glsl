@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces one path per pixel and pass, and averages it with the earlier passes. This text follows a
+// Traces one path per pixel and pass, and averages the paths of all passes. This text follows a
 // material with the interface for path tracers (docs/path_tracing.md), path_random, the shapes, the
 // camera and the texture coordinates.
 
@@ -51,7 +51,7 @@ vec3 stage_reflected(Hit hit, Point p, vec3 wo)
     return STAGE_PI * stage_intensity * material_evaluate(p, wo, stage_light);
 }
 
-// Sample the material: whether the path continues along wi.
+// Samples wi. The result tells whether the path continues along wi.
 bool stage_drawn(Hit hit, Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight)
 {
     float pdf;

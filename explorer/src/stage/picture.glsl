@@ -15,8 +15,8 @@ uniform vec3 stage_light_view;
 uniform float stage_intensity;
 uniform float stage_share; // Weight of this frame in the average.
 uniform float stage_gain; // Scale factor of the exposure.
-uniform float stage_shift; // Offset of each side in pixels if they are side by side; otherwise 0.
-// Position of the wipe in pixels from the left; the left side's material is to its left.
+uniform float stage_shift; // Offset of each side in pixels if shown side by side, otherwise 0.
+// Position of the wipe in pixels from the left. The left material is to the left of the wipe.
 uniform float stage_edge;
 uniform float stage_scale; // Difference shown in the last color; 0 for a picture.
 uniform vec3 stage_colors[9]; // Colors of differences from -scale to +scale, linear.

@@ -11,8 +11,7 @@ vec2 stage_globe(vec3 direction)
     return 0.5 + vec2(stage_turn(direction.x, direction.z), latitude);
 }
 
-// Texture coordinates: those of a globe, or for flat shapes two axes in the plane at about the same
-// scale.
+// Texture coordinates of a globe or, for flat shapes, two axes in the plane at a similar scale.
 vec2 stage_texture_place(vec3 p, vec3 normal)
 {
 #if STAGE_SHAPE == 2 || STAGE_SHAPE == 4

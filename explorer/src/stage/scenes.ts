@@ -2,7 +2,7 @@
 // The viewer of each shape, and the mapping between lights and points of the picture.
 //
 // World frame: x to the right, y up, z towards the viewer. The viewer's frame is the world rotated
-// about x. The gl host sees a single sphere straight on and without perspective; and so does the stage.
+// about x. The gl host sees a single sphere straight on and without perspective, as does the stage.
 
 import type { Triple, Vec3 } from "../data";
 import type { Shape, State } from "../state";

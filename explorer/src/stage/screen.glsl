@@ -13,7 +13,7 @@ vec3 stage_encoded(vec3 color)
     return mix(12.92 * color, curved, step(vec3(0.0031308), color));
 }
 
-// Dither by one step of the screen to avoid banding: Roberts' R2 sequence.
+// Dithering by one step of the screen avoids banding. The offsets are Roberts' R2 sequence.
 float stage_dither()
 {
     return fract(dot(gl_FragCoord.xy, vec2(0.7548776662, 0.5698402910))) - 0.5;

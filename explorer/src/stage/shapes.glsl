@@ -53,7 +53,7 @@ void stage_keep(inout Hit hit, float t, vec3 normal, int part)
         hit = Hit(t, normal, part);
 }
 
-// First and last intersections of a ray with a sphere around the origin; negative if it misses.
+// First and last intersections of a ray with a sphere around the origin, or negative numbers.
 vec2 stage_sphere(vec3 origin, vec3 direction, float radius)
 {
     float ahead = dot(origin, direction);
@@ -100,7 +100,7 @@ float stage_before_cloth(vec3 p)
     return p.z - stage_cloth(p.xy).x;
 }
 
-// March through the slab that contains the cloth, then bisect the step that crosses it.
+// March through the slab that contains the cloth, then bisect the step that crosses the cloth.
 Hit stage_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
@@ -140,8 +140,8 @@ vec4 stage_fiber(vec3 p)
     return vec4(core, length(core) - STAGE_FIBER);
 }
 
-// Sphere tracing: step along the ray by the distance to the nearest fiber, from the plane in front
-// of them.
+// Sphere tracing starts in the plane in front of the fibers. Each step along the ray is the
+// distance to the nearest fiber.
 Hit stage_nearest(vec3 origin, vec3 direction)
 {
     Hit hit = Hit(STAGE_NEVER, vec3(0.0), STAGE_NOTHING);
@@ -171,8 +171,8 @@ bool stage_cut(vec3 p)
     return all(greaterThan(stage_in_cut(p), vec3(0.0)));
 }
 
-// A plane face of the cut through the shell, seen from the cut; `other` excludes the face's own
-// side.
+// A plane face of the cut through the shell, seen from the cut. `other` makes the test of bounds
+// ignore the face itself.
 void stage_face(inout Hit hit, vec3 origin, vec3 direction, vec3 normal, float height, vec3 other)
 {
     float t = (height - dot(origin, normal)) / dot(direction, normal);
@@ -223,7 +223,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
 }
 #endif
 
-// Opacity of the floor, which fades into the page; 1 for other parts.
+// Opacity of the floor, which fades into the page, or 1 for other parts.
 float stage_opacity(vec3 p)
 {
 #if STAGE_SHAPE == 1
@@ -235,9 +235,9 @@ float stage_opacity(vec3 p)
 #endif
 }
 
-// Visible share of the surroundings at a point. It is exact for the sphere, the plane and the
-// floor, where the sphere hides a cap, 1 / d^2 times the cosine, and rough elsewhere. Path tracing
-// is exact.
+// Visible share of the surroundings at a point. For the sphere, and for planes from which the
+// sphere hides a cap of share cosine / d^2, it is exact. Other shapes have a rough estimate, which
+// path tracing does not use.
 float stage_ambient(vec3 p, vec3 normal)
 {
 #if STAGE_SHAPE == 0 || STAGE_SHAPE == 4
