@@ -73,7 +73,7 @@ class Row:
     name: str
     target: str  # shading language; "" for a renderer that only has its own materials
     way: str = ""  # key of `mxeon.conformance.backends.BACKENDS`, or ""
-    needs: str = ""  # missing requirement, if mxeon can check the text of shaders but not run it
+    needs: str = ""  # requirement for running shaders, if mxeon can only check the text
     scenes: tuple[Scene, ...] = ()  # scenes in which a document's materials are rendered
     surfaces: bool = False  # whether surface shaders are checked on the host
     rounding: float = 0.0  # relative rounding error of pixels, beyond the error of float32

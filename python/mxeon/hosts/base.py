@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from mxeon.shaders.generation import Shader
 
 Array: TypeAlias = NDArray[Any]  # float32 or float64, whichever the caller or engine uses
-Inputs: TypeAlias = Mapping[str, ArrayLike]  # values of a node's inputs: constant, or one per pair
+Inputs: TypeAlias = Mapping[str, ArrayLike]  # input values of a node, constant or one per pair
 
 TABLE = "u_albedoTable"
 
@@ -58,7 +58,7 @@ class Engine(ABC):
 
     name: str
     draws_images: ClassVar[bool] = False  # whether an environment may be an image
-    # Methods of shader generation unless other methods are chosen; UNCHOSEN if there are none.
+    # Default choice of methods for shader generation; UNCHOSEN if the engine offers no choice.
     default: ClassVar[Methods] = UNCHOSEN
     methods: Methods = UNCHOSEN  # methods that are chosen for all shaders
 
@@ -111,7 +111,7 @@ class Query(NamedTuple):
 
 
 class Host(Engine):
-    """An engine that executes generated shaders. A subclass overrides the functions it supports.
+    """An engine that executes generated shaders. A host overrides the functions that it supports.
 
     Other functions raise `Unsupported`, and a shader that the compiler refuses raises
     `ShaderError`. Results are in the order of the request, and are linear radiance or in 1/sr.
@@ -165,7 +165,7 @@ class Host(Engine):
         self.methods = UNCHOSEN if self.fixed else methods
 
     def table(self, shader: Shader) -> dict[str, Array]:
-        """Texels of a shader's albedo table by sampler, which has to clamp and interpolate."""
+        """Texels of a shader's albedo table, by name of a sampler that clamps and interpolates."""
         return {TABLE: self._tables(shader.table)} if shader.table else {}
 
     @cached_property
@@ -189,7 +189,7 @@ class Host(Engine):
         return ()
 
     def unread(self, shader: Shader) -> str:
-        """Description of the parts of a shader's document that the host ignores; "" without any."""
+        """Description of the parts of a shader's document that the host ignores, or ""."""
         return ""
 
     def evaluate(

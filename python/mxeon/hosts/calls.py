@@ -22,8 +22,8 @@ from mxeon.shaders.nodes import types_of
 if TYPE_CHECKING:  # the import would load MaterialX
     from mxeon.shaders.generation import Input, Shader
 
-# Matches a function that fills in a surface shader, and the function's statements before the loop
-# over lights. In Slang the first parameter is the vertex data.
+# Matches a function that computes a surface shader, and the function's statements before the loop
+# over lights. In Slang, the first parameter is the vertex data.
 FUNCTION = re.compile(
     r"^void \w+\(([^)]*)out surfaceshader \w+\)\n\{\n(.*?)^ *surfaceshader \w+ = ",
     re.MULTILINE | re.DOTALL,
@@ -47,7 +47,7 @@ class Prelude:
     inputs: dict[str, str]  # types of the function's parameters and geometric properties, by name
 
 
-@lru_cache(maxsize=16)  # the checks of a node share its shader
+@lru_cache(maxsize=16)  # the checks of a node share a shader
 def prelude(text: str, end: int) -> Prelude | None:
     """The statements before the first BSDF, whose position in the text is `end`.
 
@@ -96,7 +96,7 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
     }}
 }}
 """
-OUTPUTS = ("response", "throughput", "radiance")  # only EDFs have the radiance
+OUTPUTS = ("response", "throughput", "radiance")  # only EDFs have a radiance
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 SURFACE = "surface_normal"  # key of the geometric normal; a node's input is "normal"
 NO_POSITION = (0.0, 0.0, 1e31)  # the statement POSITION replaces this placeholder
@@ -170,7 +170,7 @@ def bsdf_call(query: Query) -> BsdfCall:
     return BsdfCall(statements, value, arguments)
 
 
-@lru_cache(maxsize=16)  # the checks of a node share its shader
+@lru_cache(maxsize=16)  # the checks of a node share a shader
 def _find_calls(text: str, closure: str, element: str) -> tuple[int, str, str, list[str]]:
     """Position and text of the statements that call BSDFs or EDFs with a closure type.
 
@@ -235,7 +235,7 @@ def _words(text: str) -> list[str]:
 
 
 def _ports(shader: Shader) -> dict[str, Input]:
-    """Inputs of a shader by name. Integers that the text converts to booleans are booleans."""
+    """Inputs of a shader by name. An input that the text converts to a boolean is a boolean."""
     ports = {port.name: port for port in shader.inputs}
     for name in booleans(shader.stages["pixel"]):
         if name in ports:

@@ -124,7 +124,7 @@ class DocumentHost(base.Host):
         return (*raster.approximations(shader), *filter(None, [self.unread(shader)]))
 
     def unread(self, shader: Shader) -> str:
-        """Report a subsurface lobe, which needs a curvature, because each quad is flat."""
+        """Report subsurface lobes, which depend on a curvature that flat quads do not have."""
         if SUBSURFACE in inner_lobes(shader):
             return (
                 f"subsurface scattering depends on the curvature, and {self.name} draws flat quads"
@@ -144,7 +144,7 @@ class DocumentHost(base.Host):
         return mx.writeToXmlString(shader.document), shader.element
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether one triangle must cover a 2 x 2 block with each pixel, which takes longer."""
+        """Whether a triangle must cover the 2 x 2 block that has a pixel, which takes longer."""
         return False
 
     def _worker(self) -> process.Worker:
@@ -161,7 +161,7 @@ class DocumentHost(base.Host):
         output, place = folder / "output.npy", PLACE if blocks else (0.0, 0.0)
         mesh = folder / f"quads{size}{place}.npz"
         if not mesh.exists():
-            np.savez(mesh, **quads(size, place))  # type: ignore[arg-type]  # not an option of savez
+            np.savez(mesh, **quads(size, place))  # type: ignore[arg-type]  # mypy expects a bool
         reply = self.worker.ask(
             output=str(output),
             mesh=str(mesh),

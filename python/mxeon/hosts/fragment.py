@@ -33,11 +33,11 @@ FETCH["vector2"] = "vec2 {0} = {1}.xy;"
 FETCH["integer"] = "int {0} = int({1}.x);"
 # Name of the texture that holds all arguments, in layers, if there are more than MOST arguments.
 STACK = "mxeon_stack"
-MOST = 12  # maximum number of textures for arguments, out of the 16 or more of a device
+MOST = 12  # maximum number of textures for arguments; every device supports 16 textures
 LAYER = (
     f"texelFetch({STACK}, mxeon_pixel + ivec2(0, {{0}} * (textureSize({STACK}, 0).y / {{1}})), 0)"
 )
-# Number of values in a type; all other types have three.
+# Number of components by type. All other types have three components.
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}
 WIDTH = 1024  # maximum number of pixels in a row of a frame
 PART = 1 << 15  # maximum number of elements that one frame evaluates

@@ -49,7 +49,7 @@ class PairHost(base.Host):
                     f"{self.name}: the sine of each pair must be at least {LEAST_SINE}"
                 )
             return self._pixels(shader, wo, wi, inputs, "", LAMP)
-        # Emission and light of the sky do not depend on wi, so any wi perpendicular to wo is right.
+        # Emission and light of the sky do not depend on wi, so wi is any vector normal to wo.
         # A mean over several pixels reduces the noise under a sky.
         sky = not through and branch != EMITTED
         repeats = max(1, PATHS // len(wo)) if sky else 1
@@ -105,7 +105,7 @@ def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
 
 
 def apart(wo: Array, wi: Array) -> Array:
-    """Directions of light, turned until the angle to the view or its opposite is large enough."""
+    """Directions of light, turned away from the view or its opposite if the angle is too small."""
     # Component of the light's direction perpendicular to the view. If this component is 0, any
     # perpendicular vector is used.
     cosine = (wo * wi).sum(axis=1, keepdims=True)
@@ -131,7 +131,7 @@ VIEW = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class TurnedPairs:
-    turn: Vectors  # rotations from the pairs' frames to the scene's, (N, 3, 3)
+    turn: Vectors  # rotations from the frames of pairs to the frame of the scene, (N, 3, 3)
 
     def turned(self, vectors: Array) -> Vectors:
         """Vectors (N or 1, 3), rotated from the frames of the pairs to the frame of the scene."""
@@ -165,7 +165,7 @@ def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
     cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(np.cross(wo, wi), axis=1)
     z = -np.hypot(DISTANCE + x, y) * cotangent
     points = np.stack([x, y, z], axis=1).astype(np.float32).astype(np.float64)
-    # Frames of the given pairs, and frames of view and light in the scene. The view is first.
+    # Frames of the given pairs, and of the pairs in the scene. The first axis is the view.
     light = np.array([-DISTANCE, 0.0, 0.0]) - points
     world = frames(np.broadcast_to(VIEW, points.shape), unit(light))
     turn = world @ np.swapaxes(frames(wo, wi), 1, 2)

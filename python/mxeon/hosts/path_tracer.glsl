@@ -12,10 +12,10 @@ uniform int tracer_pass;
 uniform int tracer_bounces; // maximum number of scattering events in a path
 uniform int tracer_size;
 uniform bool tracer_ball;
-uniform vec3 tracer_light; // direction to a distant light of irradiance pi; zero for none
+uniform vec3 tracer_light; // direction to a distant light of irradiance pi; zero if it is absent
 uniform sampler2D tracer_environment;
 uniform bool tracer_mapped; // whether the environment is a map with texels to draw
-uniform sampler2D tracer_drawn; // 256 x 256 texel indices, each repeated in proportion to its light
+uniform sampler2D tracer_drawn; // 256 x 256 indices of texels, repeated in proportion to light
 uniform sampler2D tracer_chance; // probability of drawing each texel
 uniform mat3 tracer_foot; // rotation from the picture's frame to the shader ball's foot
 uniform mat3 tracer_belt; // rotation from the foot's frame to the belt of the shader ball

@@ -19,12 +19,12 @@ from mxeon.shaders.shader_ball import BELT, OBJECT
 
 SAMPLES, BOUNCES = 64, 8  # default numbers of paths per pixel and bounces per path
 NOISY = 0.02  # relative noise above which a picture is denoised or a remedy is reported
-# Along a path, the derivatives that `texture` needs are unknown. Macros read level 0 instead.
+# The function `texture` needs derivatives, which a path does not have, so level 0 is read.
 HEAD = "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"
 
 
 def by_light(sky: Array) -> tuple[Array, Array]:
-    """256 x 256 indices of texels, repeated in proportion to light, and all probabilities."""
+    """256 x 256 indices of texels, repeated in proportion to light, and each probability."""
     rows, columns, _ = sky.shape
     across = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, np.newaxis]
     share = np.cumsum(sky.mean(axis=-1) * across + 1e-6)

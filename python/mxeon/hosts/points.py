@@ -2,9 +2,9 @@
 """Pictures in which every pixel is an exact point, because a vertex stage runs for each point.
 
 A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of
-pixels for each triangle. Instead, a host runs a generated vertex stage for points and captures its
-outputs. The outputs reach the pixel stage in the layers of a texture, one texel per pixel, and one
-triangle covers the picture. Derivatives are differences between neighboring pixels, as usual.
+pixels for each triangle. Instead, a host runs a generated vertex stage for points and captures the
+outputs. The pixel stage reads the outputs from the layers of a texture, one texel per pixel, and
+one triangle covers the picture. Derivatives are differences between neighboring pixels, as usual.
 
 The text of each stage is unchanged. Macros turn the inputs of the pixel stage into variables, and
 a second `main` sets these variables before calling the generated `main`.

@@ -121,7 +121,7 @@ def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
     if scene.light is not None:
         x, y, z = scene.light
         lamps = (Lamp(direction=(-x, -y, -z)), *lamps)
-    values["u_numActiveLightSources"] = len(lamps)  # a program would keep the last value
+    values["u_numActiveLightSources"] = len(lamps)  # set even if 0, since programs keep old values
     for number, lamp in enumerate(lamps):
         for name, value in vars(lamp).items():
             values[f"u_lightData[{number}].{name}"] = value
@@ -129,7 +129,7 @@ def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
 
 
 def surroundings(client: Client) -> Uniforms:
-    """Values of the uniforms for the client's use of an environment."""
+    """Values of the uniforms that a client sets for an environment."""
     return {
         "u_envMatrix": client.turn,
         "u_envLightIntensity": client.intensity,
@@ -232,7 +232,7 @@ class FragmentHost(base.Host):
         return self._in_parts(Frame(vertex, pixel, texels, environment(None)))
 
     def _in_parts(self, frame: Frame) -> Array:
-        """Values of a pixel stage for any number of elements, although engines limit textures."""
+        """Values of a pixel stage for any number of elements, in parts to limit texture sizes."""
         frames = (frame._replace(arguments=part) for part in fragment.parts(frame.arguments))
         return np.concatenate(list(map(self._evaluate, frames)))
 

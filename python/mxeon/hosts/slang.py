@@ -29,7 +29,7 @@ Resource: TypeAlias = Any  # an object of slangpy, a package that may not be ins
 
 
 def _slangpy() -> Resource:
-    """The package slangpy, or None if slangpy is not installed. Loads no PyTorch, which is slow."""
+    """The package slangpy, or None. PyTorch, which takes two seconds to import, is not imported."""
     modules = cast(dict[str, object], sys.modules)
     unused = modules.setdefault("torch", None) is None  # makes slangpy skip PyTorch
     try:
@@ -100,7 +100,7 @@ void {ENTRY}(uint3 mxeon_thread : SV_DispatchThreadID)
 
 
 class SlangHost(base.Host):
-    """The package slangpy, on the first of DEVICES that can run a kernel."""
+    """A host that runs slangpy on the first of DEVICES that can run a kernel."""
 
     name = "slang"
     target = "slang"
@@ -109,7 +109,7 @@ class SlangHost(base.Host):
     def __init__(self) -> None:
         if slangpy is None:
             raise NotRun(f"slang: slangpy is not installed; {install('slang')}")
-        slangpy.Logger.get().level = slangpy.LogLevel.error  # no warnings about CPUs
+        slangpy.Logger.get().level = slangpy.LogLevel.error  # hide warnings about missing features
         for device in DEVICES:
             self._kernels: dict[str, Resource] = {}
             self._names = itertools.count()
@@ -203,7 +203,7 @@ class SlangHost(base.Host):
     def _kernel(self, text: str) -> Resource:
         if text not in self._kernels:
             try:
-                name = f"mxeon_{next(self._names)}"  # unique, even if a text fails
+                name = f"mxeon_{next(self._names)}"  # a name is blocked if compilation fails
                 module = self._device.load_module_from_source(name, text)
                 program = self._device.link_program([module], [module.entry_point(ENTRY)])
                 self._kernels[text] = self._device.create_compute_kernel(program)

@@ -108,7 +108,7 @@ class TestrenderHost(PairHost):
 
 
 def find_program(name: str) -> str:
-    """Path of a program, named by its variable or on PATH."""
+    """Path of a program, from an environment variable or on PATH."""
     variable = VARIABLES[name]
     program = os.environ.get(variable) or name
     path = shutil.which(program)

@@ -111,7 +111,7 @@ def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
     cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(across, axis=1)
     points = foot + (np.linalg.norm(foot, axis=1) * cotangent)[:, np.newaxis] * rays
     points = points.astype(np.float32).astype(np.float64)
-    # Frames of the given pairs, and frames of view and light in the scene. The view is first.
+    # Frames of the given pairs, and of the pairs in the scene. The first axis is the view.
     local = frames(wo, wi)
     world = frames(-rays, -unit(points))
     return PairScene(world @ np.swapaxes(local, 1, 2), size, rays, points)

@@ -119,7 +119,7 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def reduced(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
-    """A map of means over blocks, with at least RADIANCE_SIZE rows and columns if possible."""
+    """A map reduced by means over blocks, but not to less than RADIANCE_SIZE rows or columns."""
     high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
     rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
     blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)

@@ -71,7 +71,7 @@ class VulkanHost(FragmentHost):
     name = "vulkan"
     target = "vulkan"
     path: ClassVar[str] = ""  # prefix of the device's description that names a converter
-    # Programs that the host runs, and how to install each.
+    # Programs that the host runs, each with a hint on how to install the program.
     programs: ClassVar[tuple[tuple[str, str], ...]] = (
         (COMPILER[0], f"{APT} glslang-tools"),
         (REMOVER[0], f"{APT} spirv-tools"),
@@ -125,7 +125,7 @@ class VulkanHost(FragmentHost):
     def _program(
         self, pixel: str, sets: Iterable[Bindings]
     ) -> tuple[tuple[Resource, ...], Resource]:
-        """Layouts of a pixel stage's bindings, and a pipeline for any such resources."""
+        """Layouts of a pixel stage's bindings, and a pipeline that works with any resources."""
         if pixel not in self._programs:
             if len(self._programs) == PROGRAMS:
                 self._programs.clear()

@@ -152,13 +152,13 @@ class Facets(Exact):
 
 
 class CoarseFacets(Facets):
-    """A node on the polyhedron, for a renderer that stores light in few bits."""
+    """A node rendered on the polyhedron by a renderer that stores light in few bits."""
 
     engine_errors: ClassVar[Errors] = {"value": COARSE_FACETS, "albedo": COARSE_FACETS}
 
 
 class FacetPairs(Facets):
-    """A node that is evaluated for any pair of directions. Environments need the polyhedron."""
+    """A node that is evaluated for any pair of directions. Only environments need pictures."""
 
     engine_errors: ClassVar[Errors] = {
         "value": FACET_PAIRS,

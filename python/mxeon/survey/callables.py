@@ -70,7 +70,7 @@ class Function(backends.Backend):
 
     @cached_property
     def edges(self) -> Batch:
-        """Pairs for the check `finite`: at the edges of the domain, and from all other checks."""
+        """Pairs for the check `finite`, at the edges of the domain and from all other checks."""
         batches = [super().edges]
 
         def record(batch: Batch) -> Batch:
@@ -148,8 +148,8 @@ def check_brdf(brdf: Brdf, model: str = "eon", name: str | None = None) -> Run:
     - `brdf`: A function `brdf(wo, wi, rho, roughness) -> values`. The shape of wo, wi and rho is
       (N, 3), and the shape of roughness is (N,). The values, (N, 3) in 1/sr, do not include the
       cosine. The directions leave the surface, in the local frame with the normal +z. Roughness is
-      in [0, 1]. For models with the parameter sigma, see `mxeon.models.table`, roughness is sigma
-      in radians, in [0, pi/2].
+      in [0, 1]. If the model has the parameter sigma according to `mxeon.models.table`, roughness
+      is sigma in radians, in [0, pi/2].
     - `model`: The required model, which is a row of `mxeon.models.table.DIFFUSE_MODELS` that has a
       parameter.
     - `name`: The function's name in the report. The default is `__name__`.

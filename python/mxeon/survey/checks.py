@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of a renderer's sampler, for the density and for samples that follow the density."""
+"""Checks that a renderer's sampling density is correct, and that samples follow the density."""
 
 from collections.abc import Iterator
 from typing import cast
@@ -19,7 +19,7 @@ from mxeon.survey.specs import RendererSpec
 
 # A correct sampler exceeds this limit in one of 3.5 million runs.
 CHI_SQUARE = single(5.0, Quantity.DEVIATIONS, "five standard deviations")
-# The density has the fourth power of the length of a transformed direction, so it loses three bits.
+# The density has the fourth power of the length of a transformed direction, which costs three bits.
 OWN_DENSITY = sum_of(
     roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY
 )

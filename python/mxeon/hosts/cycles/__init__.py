@@ -155,7 +155,7 @@ class CyclesHost(PairHost):
         with self.worker.temporary() as name:
             pixels = self._render(Path(name), text, **frame)
         image = np.where(sphere(frame["size"]).mask[..., None], pixels, np.float32(0.0))
-        image.flags.writeable = False  # shared by all callers
+        image.flags.writeable = False  # all callers share the cached image
         return image
 
     def _render(self, folder: Path, text: str, **frame: object) -> Array:

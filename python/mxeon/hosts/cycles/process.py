@@ -18,7 +18,7 @@ from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
 
-CHECKOUT = data_folder()  # no checkout, and no environment, if the package is installed
+CHECKOUT = data_folder()  # an installed package has no environment in this folder
 
 
 def interpreter(name: str = "cycles") -> Path:

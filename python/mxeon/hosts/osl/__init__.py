@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Generated OSL that prints the closures of a shader, for checks that need no renderer.
 
-1. `carriers` is OSL text that makes closures of a generated text return labels.
+1. `carriers` provides OSL that turns the closures of generated text into labels.
 2. OSL in Blender runs the text and prints a line for each point.
 3. `trees` turns the lines into trees of arrays.
 4. `mxeon.conformance.reference.closures` computes the values of a tree by the reference models.
@@ -25,7 +25,7 @@ from mxeon.hosts.osl.points import Column, row
 from mxeon.hosts.osl.trees import TreeRows, read_trees, whole_label
 from mxeon.shaders.generation import Shader
 
-LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # matches row of a point, label, text
+LINE = re.compile(r"^mxeon (\d+) (\S+) (.*)$")  # matches the row of a point, a label, and a text
 VERSION = "float version(float x)\n{\n    return OSL_VERSION;\n}\n"
 # The global variable I of OSL points towards the surface. A macro replaces I, because a function
 # that reads a global variable would not see a local variable of the same name.
@@ -37,7 +37,7 @@ vector mxeon_view()
 }}
 #define I mxeon_view()
 """
-TROUBLE = ("ERROR", "WARNING")  # first words of Blender's messages
+TROUBLE = ("ERROR", "WARNING")  # first words of Blender's messages about errors
 ROOT = "root"
 SHADERS, POINTS = 8, 1 << 14  # cached shaders, and cached points per shader
 VIEWED = re.compile(r"\bI\b")  # matches texts that read the view
@@ -94,7 +94,7 @@ class OslHost(base.Host):
     def _run(
         self, shader: Shader, columns: Mapping[str, Column], view: Column, count: int
     ) -> list[str]:
-        """Labels of a shader's closures for each value of its variables."""
+        """Labels of a shader's closures, one label for each row of the variables."""
         with self._blender.temporary() as name:
             folder, place = Path(name), process.PLACE
             [read] = points.statements({"view": view}, folder / "view.tif", count, place)

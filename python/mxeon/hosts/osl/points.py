@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values of variables at points, in images with one pixel per point, and OSL that reads images."""
+"""Images that hold values of variables, one pixel per point, and OSL that reads such images."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def row(count: int, place: str) -> str:
 def statements(columns: Mapping[str, Column], image: Path, count: int, place: str) -> list[str]:
     """OSL statements that read a point's variables exactly from a float32 image.
 
-    `place` consists of two OSL expressions, which are the coordinates at which a point reads.
+    `place` has two OSL expressions, which are the coordinates at which a point reads the image.
     """
     lines, size, (x, y) = [], side(count), place.split(", ")
     pixels = np.zeros((size * size, len(columns), 3), np.float32)

@@ -22,7 +22,7 @@ DEEPEST = 200  # maximum nesting of closures
 LONGEST = 1 << 20  # maximum number of characters in an expanded label
 LABEL = re.compile(r"@-?\d+")
 NUMBER = re.compile(r"(?<=[\[,])-?(?:\d+(?:\.\d+)?(?:e[-+]?\d+)?|nan|inf)(?=[\],])")
-PLACEHOLDER = re.compile(r"(?<=[\[,])#")  # stands for a number
+PLACEHOLDER = re.compile(r"(?<=[\[,])#")  # matches a # that stands for a number
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class ClosureTree:
 
 @dataclass(frozen=True)
 class TreeRows:
-    """The tree of closures with the same structure, and the rows of the points that share it."""
+    """A tree for closures of the same structure, and the rows of points that share the tree."""
 
     rows: NDArray[np.intp]
     tree: ClosureTree | None

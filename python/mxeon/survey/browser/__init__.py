@@ -166,7 +166,7 @@ class ReadingHost(PackageHost, base.Host):
         return np.where(sphere(scene.size).mask[..., None], image, np.float32(0.0))
 
     def unread(self, shader: Shader) -> str:
-        """Names of inputs that the package ignores, except inputs with default values, or ""."""
+        """Description of inputs that the package ignores, except inputs with default values."""
         surface = surface_shader(shader.document, shader.element)
         defaults = {
             each.getName(): each.getValueString() for each in surface.getNodeDef().getActiveInputs()

@@ -28,7 +28,7 @@ MESH = "polyhedron.npz"
 
 
 class PolyhedronHost(Engine):
-    samples: ClassVar[int]  # number per pixel under an environment; a distant light needs one
+    samples: ClassVar[int]  # per pixel under an environment; 1 is enough under a distant light
     script: ClassVar[Path]  # program of the worker process
     device: ClassVar[str]
     missing: ClassVar[str] = ""  # message if the renderer is not installed
@@ -75,7 +75,7 @@ class PolyhedronHost(Engine):
         return values
 
     def _interpreter(self) -> Path:
-        """Path of a Python with the renderer, from an environment variable or of this process."""
+        """Path of the Python that has the renderer, by default the Python of this process."""
         path = os.environ.get(f"MXEON_{self.name.upper()}_PYTHON")
         python = Path(path or sys.executable)
         if not (python.is_file() and os.access(python, os.X_OK)):

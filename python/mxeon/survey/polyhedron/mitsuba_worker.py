@@ -101,7 +101,7 @@ def render(
 
 
 def integrator(distant: bool) -> JsonObject:
-    """An integrator for one bounce. It samples the light if the light is distant, else the BSDF."""
+    """An integrator for one bounce, which samples a distant light if there is one, or the BSDF."""
     samples = {"emitter_samples": int(distant), "bsdf_samples": int(not distant)}
     return {"type": "direct", "hide_emitters": True, **samples}
 
