@@ -57,7 +57,7 @@ def same(frame: Frame) -> Frame:
 
 
 def premultiplied(frame: Frame) -> Frame:
-    """A frame without an environment whose mixes scale lobe weights, as since MaterialX 1.39.5."""
+    """A frame without an environment; mixes scale lobe weights (new in MaterialX 1.39.5)."""
     from mxeon.shaders.options import offers
 
     methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)

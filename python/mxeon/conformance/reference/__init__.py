@@ -31,7 +31,7 @@ PATTERN_ERROR = 0.01
 LATTICE = 32  # number of judged rows and columns in a picture with more than MOST materials
 MOST = 2000  # maximum number of integrals, each of which takes a millisecond
 
-PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # hosts draw at most three components
+PATTERNS = (*DRAWN, "boolean", "color4", "vector4")  # shaders draw at most three components
 TARGETS = ("glsl", "essl", "vulkan", "wgsl")  # targets whose shaders can draw a node's value
 
 

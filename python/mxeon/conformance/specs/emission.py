@@ -142,7 +142,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return (spec.ZERO,)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views from the front, and views at the cosines of GRID."""
+        """Random views from the front, and views at the fixed cosines `samples.GRID`."""
         rng = generator()
         special = samples.directions_at(np.repeat(samples.GRID, 64), 0.0)
         return (self.views(rng, directions(rng, counts.pairs)), self.views(rng, special))

@@ -51,10 +51,10 @@ ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all later operations
 
 
 def lobe_terms(variance: float, scale: float, angle: float = ANGLE) -> tuple[Term, ...]:
-    """Error terms of pi f for lobes of at least these widths; each angle has `angle` roundings.
+    """Error terms of pi f for lobes wider than `variance` and `scale`.
 
-    The largest derivative with respect to an angle is REACH / sqrt(variance) for log M, and
-    1 / (SCALE scale) for log N.
+    Each angle has `angle` roundings. The largest derivative with respect to an angle is
+    REACH / sqrt(variance) for log M, and 1 / (SCALE scale) for log N.
     """
     slope = REACH / math.sqrt(variance) + 1.0 / (SCALE * scale)
     lobe = f"v {variance:g} and s {scale:g}"
@@ -147,7 +147,7 @@ class HairSpec(PbrSpec):
         return np.asarray(front * near + (1.0 - front) * far)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by max(value, LEAST) plus absolute derivatives along the four angles."""
+        """Divide values by max(value, LEAST) plus the slopes along a pair's four angles."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:

@@ -556,7 +556,7 @@ class Films(NamedTuple):
     size: int
     alpha: tuple[float, float]
     mu: tuple[float, float]
-    thickness: tuple[float, float]  # nm
+    thickness: tuple[float, float]  # range in nm
 
 
 # tools/fits/thin_film.py measures the mean errors of the sets of films below.
