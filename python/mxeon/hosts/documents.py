@@ -144,7 +144,7 @@ class DocumentHost(base.Host):
         return mx.writeToXmlString(shader.document), shader.element
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether a triangle must cover the 2 x 2 block that has a pixel, which takes longer."""
+        """Whether a triangle must cover a block of 2 x 2 pixels, which takes longer to render."""
         return False
 
     def _worker(self) -> process.Worker:

@@ -102,7 +102,7 @@ DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # textures are alrea
 
 
 def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
-    """A pixel stage that evaluates a shader's BSDF, and the texels of the arguments, by sampler."""
+    """Text of a pixel stage that evaluates a shader's BSDF, and texels of arguments by sampler."""
     shader = query.shader
     dialect, call = DIALECTS[shader.target], bsdf_call(query)
     before, output = _before_main(shader.stages["pixel"], dialect)
@@ -135,7 +135,7 @@ def renamed(text: str) -> str:
 def function_evaluation(
     source: str, function: str, arguments: Sequence[ArrayLike], target: str
 ) -> tuple[str, Columns]:
-    """A pixel stage that evaluates a function of `source`, and the texels of the arguments."""
+    """Text of a pixel stage that evaluates a function of `source`, and texels of arguments."""
     values, call = functions.call(source, function, arguments)
     return evaluation(source, values, [f"mxeon_out = vec4(vec3({call}), 1.0);"], target)
 
@@ -143,7 +143,7 @@ def function_evaluation(
 def evaluation(
     source: str, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str], target: str
 ) -> tuple[str, Columns]:
-    """A pixel stage that executes the statements of `body`, and the texels of the arguments."""
+    """Text of a pixel stage that executes the statements of `body`, and texels of arguments."""
     dialect = DIALECTS[target]
     main, texels = _main(dialect, arguments, body)
     return dialect.version + dialect.prelude + dialect.output + source + main, texels
@@ -206,7 +206,7 @@ def _main(
     body: Sequence[str],
     most: int = MOST,
 ) -> tuple[str, Columns]:
-    """A `main` function that reads arguments and executes `body`, and the arguments' texels."""
+    """Text of a `main` that reads arguments and executes `body`, and the texels of arguments."""
     rows = columns(arguments)
     if len(rows) <= most:
         values = {f"mxeon_{name}": each for name, each in rows.items()}

@@ -12,7 +12,7 @@ uniform int tracer_pass;
 uniform int tracer_bounces; // maximum number of scattering events in a path
 uniform int tracer_size;
 uniform bool tracer_ball;
-uniform vec3 tracer_light; // direction to a distant light of irradiance pi; zero if it is absent
+uniform vec3 tracer_light; // direction to a distant light of irradiance pi; zero without a light
 uniform sampler2D tracer_environment;
 uniform bool tracer_mapped; // whether the environment is a map with texels to draw
 uniform sampler2D tracer_drawn; // 256 x 256 indices of texels, repeated in proportion to light

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The compiler shadewire, written in Rust, which translates MaterialX with closures of its own.
+"""The host of shadewire, a MaterialX compiler written in Rust that has its own closures.
 
 shadewire reads a document and returns a library of GLSL functions, which run as on the host `gl`.
 The returned text stays unchanged, because inputs that vary are connected to geometric properties. A

@@ -203,7 +203,7 @@ class SlangHost(base.Host):
     def _kernel(self, text: str) -> Resource:
         if text not in self._kernels:
             try:
-                name = f"mxeon_{next(self._names)}"  # a name is blocked if compilation fails
+                name = f"mxeon_{next(self._names)}"  # a name cannot be used again after a failure
                 module = self._device.load_module_from_source(name, text)
                 program = self._device.link_program([module], [module.entry_point(ENTRY)])
                 self._kernels[text] = self._device.create_compute_kernel(program)

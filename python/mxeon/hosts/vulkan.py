@@ -237,7 +237,7 @@ class WgslHost(VulkanHost):
     interfaces = ("Vulkan", "Metal", "D3D12")
 
     def _vertex(self, pixel: str) -> str:
-        """A vertex stage with the inputs of the pixel stage as outputs, as wgpu requires."""
+        """A vertex stage whose outputs are the inputs of the pixel stage, as wgpu requires."""
         head, rest = super()._vertex(pixel).split("\n", 1)
         outputs = [f"layout (location = 0) out {block}\n" for block in INPUT_BLOCK.findall(pixel)]
         return "".join([f"{head}\n", *outputs, rest])
