@@ -266,9 +266,6 @@ def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
     return (Cause(Kind.NOT_FINITE, region=region_of(zeros, EXACT)),)
 
 
-# Each comparison below covers a quantity, such as the albedo.
-
-
 @dataclass(frozen=True, eq=False)
 class Comparison:
     """A quantity: how to compare measured with expected values, and how to explain differences."""
