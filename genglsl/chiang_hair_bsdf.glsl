@@ -23,7 +23,7 @@ float chiang_hair_bessel(float x)
           + t * (-0.01647633 + t * 0.00392377)))))))) / sqrt(x);
 }
 
-// 2 v sinh(1 / v) exp(-1 / v). If v >= 1, sinh is a series up to u^8. Relative error: 3e-8.
+// 2 v sinh(1 / v) exp(-1 / v), by a series up to the eighth power if v >= 1. Relative error: 3e-8.
 float chiang_hair_norm(float v)
 {
     float u = 1.0 / v;
@@ -33,8 +33,8 @@ float chiang_hair_norm(float v)
                      * (1.0 + u2 / 6.0 * (1.0 + u2 / 20.0 * (1.0 + u2 / 42.0 * (1.0 + u2 / 72.0))));
 }
 
-// M_p of two directions (cosine, sine). The published exponents would cancel, so the distance of
-// one direction from the mirrored other replaces them. I_0 is even, so a cosine may lose its sign.
+// M_p of two directions (cosine, sine). Since the published exponents would cancel, the distance of
+// inclined_i from the mirrored inclined_o is used. I_0 is even, so a cosine may lose its sign.
 float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
 {
     float c = abs(inclined_i.x);
@@ -43,8 +43,8 @@ float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
            / chiang_hair_norm(v);
 }
 
-// Unsigned angle between a vector and the x axis, twice a polynomial (tools/fits/arc_tangent.py).
-// Built-in arc tangents are off by 1e-6 or more.
+// Unsigned angle between a vector and the x axis by a polynomial (tools/fits/arc_tangent.py), since
+// built-in arc tangents are off by 1e-6 or more.
 float chiang_hair_angle(vec2 w)
 {
     vec2 a = abs(w);
@@ -102,7 +102,7 @@ vec2 chiang_hair_tilt(float alpha)
 }
 
 // Terms that depend on the view. The columns of A are A_p of R, TT and TRT; A_rest is A_p of TRRT+.
-// Angles of the view and of the refracted ray are (cosine, sine).
+// Angles of the view and the refracted ray are (cosine, sine).
 struct ChiangHairSection
 {
     mat3 A;
@@ -135,7 +135,7 @@ vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughne
 {
     ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
 
-    // The tilted inclination of the light, and the azimuth of the light from the exit of R.
+    // The tilted inclination of the light, and the azimuth relative to the exit of R.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));

@@ -4,7 +4,7 @@
 #include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_schlick.glsl"
 
-// Average of the Fresnel curve over visible facets. With color82 1, dip is 0.
+// Average of the Fresnel curve over visible facets. If color82 is 1, dip is 0.
 vec3 generalized_schlick_visible(MicrofacetLobe lobe, FresnelData fd, vec3 dip)
 {
     float m = 1.0 - ggx_cosine_schlick(lobe.visible.x, lobe.visible.y, fd.exponent);

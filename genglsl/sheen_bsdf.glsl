@@ -20,7 +20,7 @@ float conty_kulla_log_sine(vec3 N, vec3 H)
                      : log(max(dot(sine, sine), 1e-30));
 }
 
-// [MaterialX2026], Conty-Kulla Sheen Equations, for color 1.
+// [MaterialX2026], Conty-Kulla Sheen Equations, for a color of 1.
 float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
 {
     float shape = 0.5 / roughness;
@@ -28,8 +28,8 @@ float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
     return density / (4.0 * (mu_i + mu_o - mu_i * mu_o));
 }
 
-// [MaterialX2026], Zeltner Sheen Model, times the cosine, for albedo 1. The frame comes from a
-// cross product, since wo - mu_o N is only a rounding error if wo is along the normal.
+// [MaterialX2026], Zeltner Sheen Model, times the cosine, for an albedo of 1. The frame comes from
+// a cross product, since wo - mu_o N is only a rounding error if wo is along the normal.
 float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 {
     vec3 Y = cross(N, wo);

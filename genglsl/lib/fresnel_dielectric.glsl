@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fresnel reflectance F of a dielectric, the cosine-weighted average F_ss over the hemisphere, and
-// the average over visible facets of GGX. mu is the cosine between wo and the normal.
+// the average over visible facets of GGX. mu is dot(wo, N).
 
 // [MaterialX2026], Dielectric Fresnel Equations. Amplitudes avoid 0 / 0 at ior 0.
 float eonlib_fresnel_dielectric(float mu, float ior)
@@ -50,7 +50,7 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
 // Shares of light that pass to the less dense side if ior < 1. x is the mean of 1 - F over visible
 // facets. y follows paths from that side in reverse and excludes light that facets reflect back.
 // Source and derivation: tools/fits/ggx_inside.py. Domain: mu and alpha in [1e-4, 1], ior in [0.33,
-// 0.98]. Largest absolute errors: 2.8e-2 of the albedo by x, 3.4e-2 of y.
+// 0.98]. Largest absolute errors: 2.8e-2 of the albedo with x, and 3.4e-2 of y.
 vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 {
     float mu2 = mu * mu;
@@ -89,9 +89,9 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 }
 
 // Average over the visible facets if ior >= 1. Near ior 1, F only depends on the cosine divided by
-// sqrt(ior^2 - 1). So below ior 1.03, the fit for 1.03 is used at k mu and k alpha, both at most 1.
-// If k mu exceeds 1, the fitted cosine is scaled by k mu. Largest absolute error of the albedo
-// below ior 1.03, where k alpha exceeds 1: 9.3e-3.
+// sqrt(ior^2 - 1). So below ior 1.03, the fit for 1.03 is used at k mu and k alpha, both at most 1,
+// and the fitted cosine is divided by k, or multiplied by mu if k mu > 1. Largest absolute error of
+// the albedo below ior 1.03, where k alpha exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));

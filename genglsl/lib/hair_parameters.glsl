@@ -25,7 +25,7 @@ float hair_logistic(float azimuthal)
     return a * (0.265 + 1.194 * a) + 5.372 * pow(a, 22.0);
 }
 
-// Absorption of a mix of melanins, -log(1 - concentration) in all: [dEon2011].
+// Absorption of a mix of melanins, whose amount is -log(1 - concentration): [dEon2011].
 vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelanin, vec3 pheomelanin)
 {
     float melanin = -log(max(1.0 - max(concentration, 0.0), HAIR_LEAST_SHARE));

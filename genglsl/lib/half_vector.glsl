@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The half vector of two directions.
+// The half vector of two directions in all models.
 
 // If the light is exactly opposite the view, the result is the normal. The square of 1e-15 is not
 // denormal, and 1e-15 only matters next to sums that are 0 up to rounding.

@@ -13,8 +13,8 @@
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
-// Gauss's rule for a semicircle over [-1, 1] has nodes x, 0 and -x with weights (1 - x^2) / 2. Each
-// node has a third of the half width.
+// Gauss's rule for a semicircle over [-1, 1] has nodes x, 0 and -x with weights (1 - x^2) / 2. A
+// node is as wide as a third of the half width.
 #define FILM_OUTER 0.70710678
 
 // Cosine, width and two weights of a node. Nodes 0 to 2 are for visible facets, 3 to 5 are for
@@ -31,8 +31,8 @@ vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
     return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
-// Reflectances under a film. Unused ones are skipped: the value in an environment, and the average
-// over a metal's visible facets in direct light, since metal is opaque.
+// Reflectances under a film. Unused ones are skipped: F.value in an environment, and F.visible of a
+// metal in direct light, since nothing lies below a metal.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     F.outside = vec3(1.0);
@@ -41,7 +41,7 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
         float mu = lobe.visible.x;
         float alpha = lobe.visible.y;
         float y = alpha / (alpha + 0.2);
-        // Mean cosine, half width and bend of the nodes for visible facets, from the source of
+        // Mean cosine, half width and bend of the nodes for visible facets. The source is that of
         // F_ss. Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error: 7.7e-2, in total
         // reflection by a film of index 1.16 on a metal of lower index. Outside the domain: 0.14.
         vec3 C = vec3(3.252, 0.32298, 0.14542)

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Code shared by the microfacet nodes: geometry, reflectances and reflection of a GGX lobe.
+// Code of the microfacet nodes: geometry, reflectances and reflection of a GGX lobe.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
-// Least index. A smaller one is lost next to 1 in float32, and MaterialX's curve is 0/0 along the
+// Least index. A smaller index is lost next to 1 in float32, and MaterialX's curve is 0/0 along the
 // normal.
 #define MICROFACET_LEAST_INDEX 1e-3
 
@@ -40,8 +40,8 @@ struct MicrofacetFresnel
     vec3 outside;
 };
 
-// Whether a lobe is off: its weight is 0 or less, or it only transmits (scatter_mode 1) while
-// reflection is asked.
+// Whether a lobe is off: its weight is 0 or less, or it only transmits (scatter_mode 1) and
+// closureType does not.
 bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     bool transmission = closureData.closureType == CLOSURE_TYPE_TRANSMISSION;
@@ -60,7 +60,7 @@ float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
     return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
 }
 
-// Cosines and alphas are clamped as divisors. Retroreflection mirrors wo about the normal.
+// Cosines and alphas are clamped, since they divide. Retroreflection mirrors wo about the normal.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
 {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light through a microfacet surface, and response and throughput of lobes that may transmit.
+// Transmission of microfacet surfaces, and lobes that may transmit.
 
 #include "microfacet_film.glsl"
 
 // Light through a surface that transmits `share`. The view is refracted twice, as by a solid
 // sphere. If MaterialX renders transmission as opacity, the result is the tint.
 //
-// MaterialX's squared exit cosine is 1 - n^2 (1 - q^2), where q is the cosine inside. Rounded below
-// 0, it causes 0 / 0. A view longer by d adds 8 d q^2 / n^2, at grazing 8e-6 n^2, three times the
-// rounding of seven operations. Near n = 1 and above 4, d is too large: n is clamped to [1.001, 4].
-// Smooth surfaces keep n above 4, but with a larger cosine.
+// MaterialX's squared exit cosine is 1 - n^2 (1 - q^2), where q is the cosine inside. If it rounds
+// below 0, the result is 0 / 0. So the view is lengthened by d, which adds 8 d q^2 / n^2: at
+// grazing 8e-6 n^2, three times the rounding error of seven operations. Near n = 1 and above 4, d
+// is too large, so n is clamped to [1.001, 4]. Smooth surfaces keep n above 4, but with a larger
+// cosine.
 //
 // A Schlick curve that is F0 except at grazing transmits `share` in both sums. A and B are
 // MaterialX's fits.
@@ -32,7 +33,7 @@ vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData f
     fd.model = FRESNEL_MODEL_SCHLICK;
     fd.airy = false;
     fd.ior = vec3(n);
-#ifdef MX_REFRACTION_UNMASKED // no division by G_1: patch 0009, genglsl/environment
+#ifdef MX_REFRACTION_UNMASKED // patch 0009, genglsl/environment
     fd.F0 = 1.0 - share;
 #else
     fd.F0 = 1.0 - mx_ggx_smith_G1(mu, lobe.alpha) * share;

@@ -21,8 +21,8 @@ vec3 subsurface_ring(float mu, vec3 chord)
     return max(along, 0.0) + more / 3.14159265358979;
 }
 
-// The blurred cosine. `reach` is the mean free path divided by the radius. In terms of t = exp(-r /
-// (3 reach)), the profile is (1 + t^2) dt.
+// The blurred cosine. `reach` is the mean free path divided by the sphere's radius. In terms of t =
+// exp(-r / (3 reach)), the profile is (1 + t^2) dt.
 vec3 subsurface_blur(float mu, vec3 reach)
 {
     vec3 least = exp(-2.0 / (3.0 * max(reach, 1e-6)));  // t at r = 2, the diameter

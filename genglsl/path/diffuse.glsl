@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diffuse lobes for path tracers. EON has a sampler, the other lobes use a cosine.
+// Diffuse lobes for path tracers. EON has a sampler, other lobes sample a cosine.
 
 #include "lib/questions.glsl"
 #include "../oren_nayar_diffuse_bsdf.glsl"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hair for path tracers. M_p is drawn as in [dEon2013], N_p (a logistic cut at +-pi) by its inverse
-// distribution. The cuticle tilts the light, so draws are tilted back, perhaps past the end of the
+// distribution. The cuticle tilts the light, so draws are tilted back, even past the end of the
 // fiber.
 
 #include "lib/questions.glsl"
@@ -53,7 +53,7 @@ vec2 path_hair_untilted(vec2 tilted, vec2 tilt)
 
 // Density of wi over all lobes. The model folds tilted directions at the end of the fiber, so two
 // directions of light may share a tilted direction. A draw chooses one in proportion to the
-// cosines. If none exists, the draw passes the end of the fiber to the opposite azimuth.
+// cosines. If no direction exists, the draw passes the end of the fiber to the opposite azimuth.
 float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
 {
     vec2 inclined_o = vec2(length(wo.yz), wo.x);

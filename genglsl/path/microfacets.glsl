@@ -13,7 +13,7 @@
 //
 // Light into a thinner medium takes paths out of that medium in reverse. If P is the share that
 // passes from outside and p the density of refracted directions, n^2 mu_i T(wi, wo) = P(wo) p(wo,
-// wi) mu_o. Since p follows from visible normals,
+// wi) mu_o. For visible normals, T is
 //   T(wi, wo) = P(wo) G_1(wo) / G_1(wi) p(wi, wo).
 // Other light is reflected: a part by the Fresnel curve from outside (F = 1 beyond the critical
 // angle), the remainder by perfect mirrors.
@@ -49,8 +49,8 @@ vec3 path_turned(vec3 w, vec3 N)
     return 2.0 * dot(w, N) * N - w;
 }
 
-// The facet that reflects wo into wi, or refracts wo into a wi below. A thin wall does not bend
-// light.
+// The facet that reflects wo into wi, or refracts wo into a wi below the surface, unless the wall
+// is thin.
 vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
 {
     bool through = dot(N, wi) < 0.0;
@@ -93,7 +93,7 @@ vec3 path_partner(MicrofacetLobe lobe)
 }
 
 // On the denser side, a lobe uses the averages for the outer direction to which the facet refracts.
-// In values of reflection, any outer direction will do to compare a curve with a dielectric's. The
+// For values of reflection, any outer direction will do to compare a curve with a dielectric's. The
 // code uses that of a smooth surface, with a cosine of at least 0.5.
 void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
 {

@@ -104,7 +104,7 @@ vec3 eon_flat_draw(float v, float u2, float q)
 }
 
 // Direction for wo at azimuth 0. u1 chooses one of four parts in proportion to their integrals; the
-// flat part's is pi. The other parts share a costly power, since GPU lanes that choose different
+// flat part's is pi. The other parts share one costly pow, since GPU lanes that choose different
 // parts pay for all.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
@@ -130,7 +130,7 @@ vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughn
 }
 
 // Direction drawn in proportion to the cosine times EON with a gray rho: docs/sampling.md. Samples
-// avoid the horizon, where the density is 0 and a weight 0 / 0.
+// avoid the horizon, where the density is 0 and a weight is 0 / 0.
 vec3 eon_sample(vec3 wo, float u1, float u2, float rho, float roughness)
 {
     vec3 turn = eon_azimuth_frame(wo);

@@ -155,8 +155,8 @@ float eon_cltc_probability(float mu, float roughness)
     return pow(roughness, 0.1) * P_u;
 }
 
-// [Portsmouth2025], Listing 4, but with u1 < P_u instead of u1 <= P_u, so that a P_u of 0 is no
-// divisor.
+// [Portsmouth2025], Listing 4, but with u1 < P_u instead of u1 <= P_u, so that a P_u of 0 never
+// divides.
 vec3 eon_cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     float P_u = eon_cltc_probability(wo.z, roughness);

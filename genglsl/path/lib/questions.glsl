@@ -2,13 +2,12 @@
 // A closure's `response` depends on path_asked. PATH_VALUE: f cos(theta_i) of path_wo and path_wi.
 // PATH_PDF: (weight, density of path_wi, 0). PATH_DRAW: (weight, drawn direction in two numbers).
 // The weight is the mean albedo of the closure's lobes. Weights choose between two closures and mix
-// their densities, so a density is exactly that of the draws, even if weights are rough.
+// their densities, so a density is that of the draws, even if weights are inexact.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 
-// In an environment of radiance 1, INDIRECT means the albedo. Paths have no neighbors for
-// derivatives.
+// In an environment of radiance 1, INDIRECT returns the albedo. Paths have no derivatives.
 #define mx_environment_irradiance(N) vec3(1.0)
 #define fwidth(x) vec3(0.0)
 
@@ -30,7 +29,7 @@ ClosureData path_question_in_direct_light(ClosureData closureData)
     return closureData;
 }
 
-// Arguments for the value or the albedo.
+// Arguments for the value or for the albedo.
 ClosureData path_question(ClosureData closureData)
 {
     closureData = path_question_in_direct_light(closureData);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changed from MaterialX's file of this name, Copyright Contributors to the MaterialX Project. The
-// sum of an environment over visible facets. Unlike in MaterialX, masking depends on the direction,
-// and reflectances are never negative. This file replaces MaterialX's for clients that search
+// Changed from MaterialX's file of this name, Copyright Contributors to the MaterialX Project. Sums
+// an environment over visible facets. Unlike in MaterialX, masking depends on the direction, and
+// reflectances are never negative. This file replaces MaterialX's file for clients that search
 // `genglsl/environment` before MaterialX's data.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Changed from MaterialX's file of this name, Copyright Contributors to the MaterialX Project. A
 // prefiltered environment with MaterialX's lookup and eonlib's albedo. This file replaces
-// MaterialX's for clients that search `genglsl/environment` before MaterialX's data.
+// MaterialX's file for clients that search `genglsl/environment` before MaterialX's data.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
