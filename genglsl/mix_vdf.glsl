@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node mix for media. Mixed coefficients mean a product of powers of the transmittances.
+// Node mix for media. To mix coefficients, powers of the transmittances are multiplied.
 
 #include "lib/medium.glsl"
 
 void mix_vdf(ClosureData closureData, EONLIB_VDF fg, EONLIB_VDF bg, float mixValue, out EONLIB_VDF result)
 {
-    // The floor avoids pow(0, x), which may be NaN.
+    // The lower limit avoids pow(0, x), which may be NaN.
     float share = clamp(mixValue, 0.0, 1.0);
     vec3 front = pow(max(fg.throughput, vec3(1e-30)), vec3(share));
     vec3 back = pow(max(bg.throughput, vec3(1e-30)), vec3(1.0 - share));

@@ -2,7 +2,7 @@
 // The verdict on a side: which model the side implements, whether the model is intended, and the
 // difference.
 //
-// No side is called correct before this browser has read back its shader's values.
+// No side is called correct before this browser has read back the values of the side's shader.
 
 import type { ShaderForm, ShaderSource } from "./data";
 import { show } from "./format";

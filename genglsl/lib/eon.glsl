@@ -89,7 +89,7 @@ float oren_nayar_quotient(float value, float divisor)
     return divisor > 1.0e-37 ? value / divisor : 0.0;
 }
 
-// s / t_q of [Portsmouth2025], Eq. (4), or 0 if both directions are grazing: s / t_q has no limit.
+// s / t_q of [Portsmouth2025], Eq. (4), or 0 if both cosines are 0, where s / t_q has no limit.
 float qon_quotient(float mu_o, float mu_i, float s)
 {
     return oren_nayar_quotient(max(s, 0.0), max(mu_o, mu_i));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Averages of Hoffman's generalized Schlick curve: F_ss, cosine-weighted over the hemisphere, and
-// the average over visible facets of GGX, the curve's value at a fitted cosine. mu is dot(wo, N).
+// the average over visible facets of GGX, which is the curve's value at a fitted cosine. mu is
+// dot(wo, N).
 
 // F_ss of Hoffman's curve in closed form. The average of (1 - c)^q is 2 / ((q + 1) (q + 2)), that
 // of c (1 - c)^6 is 1 / 126.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // F_airy of vacuum (1), film (2) and substrate (3) in linear Rec. 709: [MaterialX2026], Thin-Film
-// Iridescence Model. Comments name the sections. Each channel has its own substrate and sum over
+// Iridescence Model. Comments name the sections. Each channel has its substrate and sum over
 // CIE XYZ. Amplitudes are complex: if z = r_21 r_23, r_123^m cos(mu_k phi m + m (phi_21 + phi_23))
 // is the real part of z^m exp(i mu_k phi m).
 
@@ -19,9 +19,9 @@
 #define THIN_FILM_LEAST 1e-12  // least divisor, for roots of 0 and full reflection
 
 // The sum ends once the next square is at most VALUE times the squared mean reflectances or WIDTH
-// times the squared width. With squares in the ratio RATIO, a mean of 1e-3 needs ln(VALUE 1e-6) /
-// ln(RATIO) = 86.1 orders, at most COUNT. Source: tools/fits/thin_film.py. Largest relative error
-// of a film that reflects 1e-3 or more: 8e-4.
+// times the squared width. If each square is RATIO times the last, a mean of 1e-3 needs ln(VALUE
+// 1e-6) / ln(RATIO) = 86.1 orders, within COUNT. Source: tools/fits/thin_film.py. Largest relative
+// error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
 #define THIN_FILM_ORDER_RATIO 0.6
@@ -36,7 +36,7 @@ struct ThinFilmComplex
 
 ThinFilmComplex thin_film_product(ThinFilmComplex a, ThinFilmComplex b)
 {
-    ThinFilmComplex z;  // Metal lacks constructors of structs
+    ThinFilmComplex z;  // Metal lacks struct constructors
     z.re = a.re * b.re - a.im * b.im;
     z.im = a.re * b.im + a.im * b.re;
     return z;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hair for path tracers. M_p is drawn as in [dEon2013], N_p (a logistic cut at +-pi) by its inverse
-// distribution. The cuticle tilts the light, so draws are tilted back, even past the end of the
-// fiber.
+// Hair for path tracers. M_p is drawn as in [dEon2013], and N_p, a logistic cut at +-pi, by its
+// inverse distribution. The cuticle tilts the light, so draws are tilted back, even past the end of
+// the fiber.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"

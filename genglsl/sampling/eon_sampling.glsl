@@ -103,8 +103,8 @@ vec3 eon_flat_draw(float v, float u2, float q)
     return vec3((q * (1.0 - wh.y * wh.y) + 2.0 * wh.x) / (1.0 + root), wh.y, z);
 }
 
-// Direction for wo at azimuth 0. u1 chooses one of four parts in proportion to their integrals; the
-// flat part's is pi. The other parts share one costly pow, since GPU lanes that choose different
+// Direction for wo at azimuth 0. u1 chooses one of four parts in proportion to their integrals, pi
+// for the flat part. The other parts share one costly pow, since GPU lanes that choose different
 // parts pay for all.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {

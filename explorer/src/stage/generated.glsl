@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The end of a shader that mxeon generated: a main function that provides the pixel's point.
 //
-// The shader's own main is renamed, and the code below sets the variables that replace its inputs
-// from the vertex stage.
+// The shader's own main is renamed. The code below sets the variables that replace inputs from the
+// vertex stage.
 
 uniform highp sampler2D stage_surface;
 uniform highp sampler2D stage_place;
@@ -11,7 +11,7 @@ uniform highp sampler2D stage_lit;
 uniform mat3 stage_camera;
 uniform vec4 stage_frame;
 uniform float stage_intensity;
-// Height of the center around which the fibers bend, and 1; both are 0 for other shapes.
+// Height of the center around which the fibers bend, and 1. Both numbers are 0 for other shapes.
 uniform vec2 stage_bend;
 
 void main()

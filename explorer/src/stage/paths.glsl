@@ -13,7 +13,7 @@ uniform vec3 stage_light; // Unit vector towards the light, in the world frame.
 uniform float stage_intensity;
 uniform vec2 stage_bend; // As in generated.glsl.
 
-// Mean of the paths, and the fraction of them that hit an object.
+// Mean of the paths, and the fraction of paths that hit an object.
 layout(location = 0) out vec4 stage_radiance;
 // Mean square of the paths' brightness, which is the mean of three channels.
 layout(location = 1) out vec4 stage_square;

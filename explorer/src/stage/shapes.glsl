@@ -6,7 +6,7 @@
 // the viewer. The unit of length is the sphere's radius.
 
 #define STAGE_NEVER 1.0e9
-// Offset of a ray's origin from the surface, so that it does not hit the same surface again.
+// Offset of a ray's origin from the surface, so that the ray does not hit the same surface again.
 #define STAGE_OFFSET 1.0e-3
 #define STAGE_NOTHING 0
 #define STAGE_SUBJECT 1 // part with the material
