@@ -9,9 +9,9 @@ Values at p = 0 and 1 are exact for any coefficients. Newton steps, each a linea
 minimize the largest relative error of the density. The fits need the exact density, but not the
 exact inverse distribution.
 
-ROOT, which only shaders use, are coefficients of a polynomial for y = (K / K(pi / 2))^(2/5) at a
-given cosine, where y is analytic in m = 1 - cos. Without the polynomial, shaders would need an arc
-tangent and a power, and digits would cancel.
+ROOT, which only shaders use, holds the coefficients of a polynomial for y = (K / K(pi / 2))^(2/5)
+at a given cosine, where y is analytic in m = 1 - cos. Without the polynomial, shaders would need an
+arc tangent and a power, and digits would cancel.
 """
 
 from tools.fits.fon_loss import closed_form

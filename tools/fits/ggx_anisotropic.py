@@ -4,7 +4,7 @@
 With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughnesses along and across the azimuth of wo
 are
 
-    v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2,
+    v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2.
 
 For the correlation c of slopes along and across, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The lost
 light is that of isotropic facets with alpha = r at the cosine z r / v, times

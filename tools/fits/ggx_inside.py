@@ -2,8 +2,8 @@
 """Fit of the light that GGX facets transmit into a thinner medium, with an index n below 1.
 
 Facets beyond the critical angle reflect everything, so no single cosine can represent all facets.
-Let tau be the cotangent of the angle between view and facet, and let tau_c be its value at the
-critical angle, so that tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical angle is
+Let tau be the cotangent of the angle between view and facet, and let tau_c be tau at the critical
+angle, so that tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical angle is
 
     S = (1 + v / sqrt(1 + v^2)) / 2,  v = k (tau_m / tau_c - tau_c / tau_m),
 
@@ -20,7 +20,7 @@ are the cosine and sine of the view, the fit is
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
 
 Each of a, b, k_0, p and the part of S is a linear form, or the exponential of a linear form. A
-greedy search chose its terms among products of mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s /
+greedy search chose the terms among products of mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s /
 (s + alpha) and n.
 
 The share of light that follows reversed paths from outside (`mxeon.models.transmission`) has the
