@@ -15,7 +15,7 @@ from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 SIZE = 512  # width and height of the timed frames in pixels
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # processes per material; in one of six, llvmpipe is 1/6 to 2/5 slower
+PROCESSES = 7  # processes per material; llvmpipe is 17 to 40 % slower in a sixth of processes
 MESH = 128  # squares along a side of the mesh, whose cost is negligible
 LIBRARIES = ("eonlib", "stock")
 
@@ -104,7 +104,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, seconds to compile and seconds per frame by library, if called in a new process."""
+    """Device, and seconds to compile and per frame by library. Must run in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)

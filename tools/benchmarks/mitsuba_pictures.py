@@ -112,7 +112,7 @@ def time_table(mi):
 
 
 def noise_table(mi):
-    """Lines of the table in docs/sampling.md with noise and time of cosine / exact sampling."""
+    """Lines of the table in docs/sampling.md, with ratios of cosine sampling to exact sampling."""
     head = ("roughness", "variance", "time", "variance times time")
     yield f"| cosine / exact, Mitsuba {version('mitsuba')} | {' | '.join(head)} |\n{'|---' * 5}|\n"
     integrator = {"type": "path", "max_depth": 50, "rr_depth": 50}

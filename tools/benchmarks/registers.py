@@ -28,7 +28,7 @@ CHIP = "navi21"
 PROGRAM = Path(__file__).with_name("pipeline_statistics.c")
 DRIVERS = Path("/usr/share/vulkan/icd.d")
 PACKAGES = "gcc glslang-tools libvulkan-dev mesa-vulkan-drivers"
-# Names of the driver's statistics, and units.
+# Unit of each statistic, by the driver's name of the statistic.
 STATISTICS = {"VGPRs": "registers", "Instructions": "instructions", "Inverse Throughput": "cycles"}
 
 # The loop over lights in a generated shader, and the code that replaces this loop for one light.
@@ -94,7 +94,7 @@ def statistics(stages, program, driver):
 
 
 def measure(nodes=(*DIFFUSE, *BARE, *OTHERS)):
-    """Measure nodes. Raises NotRun if RADV, a compiler or a header is missing."""
+    """Measure a material of each node. Raises NotRun if RADV, a compiler or a header is missing."""
     driver = next(DRIVERS.glob("radeon_icd*.json"), None)
     tools = all(map(shutil.which, ("gcc", COMPILER[0])))
     if driver is None or not tools or not Path("/usr/include/vulkan/vulkan.h").exists():

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Times EON of eonlib and of stock in a compute shader, in nanoseconds per call and invocation.
+"""Measures the time of EON from eonlib and from stock MaterialX in a compute shader.
 
-Each invocation calls a function many times with unpredictable arguments, and stores the sum. The
-time of a loop that only adds the arguments is subtracted. The first value of each invocation is
-compared with a float64 value. On software devices, processor time is measured, which excludes other
-processes.
+A time is in nanoseconds per call and invocation. Each invocation calls a function many times with
+unpredictable arguments, and stores the sum. The time of a loop that only adds the arguments is
+subtracted. The first value of each invocation is compared with a float64 value. On software
+devices, processor time is measured, which excludes other processes.
 """
 
 import re

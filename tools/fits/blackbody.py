@@ -40,7 +40,7 @@ def sampled(count):
 
 
 def fit():
-    """Coefficients of X and Z with the printed digits, by name, the numerator's first."""
+    """Coefficients of X and Z by name, rounded as printed, beginning with the numerator."""
     t, X, Z = sampled(COUNT)
     return {
         name: refined(FORM, (t,), values, np.ones(COUNT), STARTS[name])

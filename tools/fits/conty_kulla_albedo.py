@@ -88,7 +88,7 @@ def points(count=37):
 
 
 def fit():
-    """Coefficients with the printed digits; those of the numerator come first."""
+    """Coefficients, rounded as printed. The coefficients of the numerator come first."""
     mu, roughness, E = points()
     arguments, factor, exponent = variables(mu, roughness)
     factor = factor * np.array([float(mp.exp(mp.mpf(float(x)))) for x in exponent])

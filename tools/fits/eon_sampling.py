@@ -38,14 +38,14 @@ def upper_density(m):
 
 
 def multiple_basis(t):
-    """Basis functions t w^k with w^2 = 1 - t, and their derivatives by t."""
+    """Basis functions t w^k with w^2 = 1 - t, and the derivatives with respect to t."""
     w = mp.sqrt(1 - t)
     values = [t * w**k for k in MULTIPLE_POWERS]
     return values, [w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS]
 
 
 def upper_basis(y):
-    """Basis functions (1 - y) y^(1 + k), and their derivatives by y."""
+    """Basis functions (1 - y) y^(1 + k), and the derivatives with respect to y."""
     values = [(1 - y) * y ** (1 + k) for k in UPPER_POWERS]
     return values, [(1 + k) * y**k - (2 + k) * y ** (1 + k) for k in UPPER_POWERS]
 

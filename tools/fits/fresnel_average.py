@@ -35,7 +35,7 @@ NODES = 24  # nodes of the average over the hemisphere
 
 
 def dielectric_average(n):
-    """F_ss of a dielectric for n > 1: [Walsh1926]."""
+    """F_ss of a dielectric for n > 1, in closed form [Walsh1926]."""
     n2 = n * n
     n4 = n2 * n2
     return (
@@ -93,7 +93,7 @@ def conductor_error(weights, n, k):
 
 
 def conductor_fit():
-    """Weights of the three cosines that minimize the largest absolute error over metals."""
+    """Weights of the three cosines, chosen to minimize the largest absolute error over metals."""
     exact, at = metals(INDICES, EXTINCTIONS)
     weights, _ = least_largest((1.0 - at).tolist(), (1.0 - exact).tolist())
     return tuple(float(mp.nstr(w, DIGITS)) for w in weights)

@@ -113,7 +113,7 @@ def points(across=61, along=41, root=0.0, least=LEAST):
 
 
 def fit():
-    """Coefficients with the printed digits; those of the numerator come first."""
+    """Coefficients, rounded as printed. The coefficients of the numerator come first."""
     mu, alpha = points()
     arguments, z2 = variables(mu, alpha)
     return refined(FORM, arguments, (1.0 - albedo(mu, alpha)) / z2, z2, START)

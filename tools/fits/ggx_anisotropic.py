@@ -7,13 +7,13 @@ are
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2.
 
 For the correlation c of slopes along and across, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The lost
-light is that of isotropic facets with alpha = r at the cosine z r / v, times
+light is the light that isotropic facets lose, with alpha = r at the cosine z r / v, times
 
     1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
 
 where the coefficients minimize the largest relative error of E_ss. The average of a Fresnel curve
-is that over isotropic facets with alpha = v k(0.7 + c^2) at the cosine z k(0.35 c^2), where k(p) =
-min((1 + p v) / (1 + p u), 1).
+equals the average over isotropic facets with alpha = v k(0.7 + c^2) at the cosine z k(0.35 c^2),
+where k(p) = min((1 + p v) / (1 + p u), 1).
 
     python -m tools.fits.ggx_anisotropic
 """
@@ -27,7 +27,7 @@ from tools.fits.ggx_albedo import fitted
 from tools.fits.minimax import shipped
 
 MISSED = (-0.1268, 0.074, -0.0792, 0.0696)  # the shader's C_0 to C_3
-# The grid of the fit: larger alpha, ratio of both alphas, cosine and azimuth of wo.
+# The grid of the fit: larger alpha, ratio of the alphas, cosine and azimuth of wo.
 LARGEST = (1.0, 0.6, 0.3, 0.1, 0.05)
 RATIOS = (1.3, 2.0, 3.0, 4.0, 8.0, 16.0, 30.0, 50.0)
 COSINES = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.5, 0.7, 0.9, 0.99)

@@ -60,7 +60,7 @@ class Curves:
     function: str  # name of the shader function that computes c
     reflectance: Callable  # function of the cosine and a curve's parameter
     parameters: tuple  # parameter of each curve
-    shapes: tuple  # s of each curve
+    shapes: tuple  # the number s that identifies each curve
     counts: tuple  # weight of each curve
     roots: int  # y is alpha to the power 2^-roots
     form: Form
@@ -149,7 +149,7 @@ def azimuths(scale):
 
 
 def integrals(mu, alpha, functions):
-    """Integrals over the visible facets of 1, which is E_ss, and of functions of the cosine."""
+    """Integrals of 1 and of functions of the cosine over visible facets. The first is E_ss."""
     k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
     tangent, width = azimuths(np.sqrt(low / high))
     shape = (len(low), OUTER, low.shape[-1])
@@ -202,8 +202,8 @@ def sample(curves, mu, alpha):
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
         arguments, factor = variables(curves, mu[selected], alpha[selected], shape)
-        # A flat curve would have weight 0, but c needs a weight, so that c does not drift to steep
-        # parts.
+        # Where a curve is flat, errors of c have no effect, so the weight would be 0. A minimum
+        # weight keeps c from drifting to steep parts of the curve.
         weight = np.maximum(count * slope, FLAT) * albedo[selected] * factor
         columns.append((*arguments, (c - mu[selected]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
@@ -211,7 +211,7 @@ def sample(curves, mu, alpha):
 
 
 def fit(curves):
-    """Coefficients with the printed digits; those of the numerator come first."""
+    """Coefficients, rounded as printed. The coefficients of the numerator come first."""
     return numerator(curves.form, *sample(curves, *points()), curves.below)
 
 
@@ -244,7 +244,7 @@ if __name__ == "__main__":
         largest = errors(curves, found, *points(49, 33))
         for n, error in zip(curves.parameters, largest, strict=True):
             print(f"largest absolute error at {n}: {error:.3g}")
-    # The dip uses the cosine of Schlick's curves, whose coefficients were found last.
+    # The fit of the dip uses the cosine for Schlick's curves, whose coefficients are in `found`.
     dip_found = numerator(DIP_FORM, *dip_sample(*points(41, 29), found), DIP_BELOW)
     print("ggx_dip", *printed(dip_found))
     arguments, value, weight = dip_sample(*points(49, 33), found)

@@ -50,7 +50,7 @@ SCALE = 30.0  # scales errors to about 1
 
 
 def points(seed=SEED, count=COUNT):
-    """Random cosines and roughnesses, many near the normal, critical angles or mu = alpha."""
+    """Random cosines and roughnesses, often near the normal, a critical angle, or mu = alpha."""
     rng = np.random.default_rng(seed)
     pick, ratio = rng.random((3, count)), rng.random(count)
     alpha = np.where(pick[0] < 0.5, LEAST ** rng.random(count), rng.random(count))
@@ -72,7 +72,7 @@ def albedo(mu, alpha, ior):
 
 
 def passing(mu, alpha, ior, c):
-    """Fits of the mean of 1 - F over the visible facets, and of the share by reversed paths."""
+    """Fits of the mean of 1 - F over visible facets, and of the share that `passed` computes."""
     s2, bent = 1.0 - mu * mu, 1.0 - ior * ior
     x, y, z = mu / (mu + alpha), np.sqrt(alpha), np.sqrt(s2) / (np.sqrt(s2) + alpha)
     ratio = mu * mu * s2 / alpha**2
@@ -109,7 +109,7 @@ def passing(mu, alpha, ior, c):
 
 
 def passed(mu, alpha, ior):
-    """Exact shares by reversed paths, for arrays of equal length."""
+    """Exact shares of light that follows reversed paths, for arrays of equal length."""
 
     def outside(a, n):
         return lambda mu: dielectric_albedo_dir(view(mu), 1.0, [a, a], 1.0 / n)
@@ -126,14 +126,14 @@ def sample(mu, alpha):
 
 
 def errors(coefficients, mu, alpha, ess, albedos):
-    """Errors of the compensated albedo, (I, N), by index and view."""
+    """Errors of the compensated albedo, (I, N), by IOR and view."""
     fitted = np.stack([1.0 - passing(mu, alpha, n, coefficients)[0] for n in INDICES])
     average = np.array([float(fresnel_dielectric_avg(n)) for n in INDICES])[:, np.newaxis]
     return (ess * fitted - albedos) * (1.0 + average * (1.0 - ess) / ess)
 
 
 def fit(mu, alpha, ior, sampled, exact):
-    """Fit the coefficients to results of `sample` and to exact shares by reversed paths."""
+    """Fit the coefficients to results of `sample` and to exact results of `passed`."""
 
     def powers(coefficients, power):
         share = passing(mu, alpha, ior, coefficients)[1] - exact

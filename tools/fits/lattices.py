@@ -19,13 +19,13 @@ ALPHAS = np.linspace(0.05, 1.0, 20)
 
 
 def fibonacci(count):
-    """MaterialX's points: i / n, and multiples of the golden ratio."""
+    """MaterialX's Fibonacci points: i / n, and multiples of the golden ratio modulo 1."""
     i = np.arange(count)
     return (i + 0.5) / count, (i * (np.sqrt(5.0) - 1.0) / 2.0 + 0.5) % 1.0
 
 
 def r2(count):
-    """Roberts' R2 points: multiples of powers of 1 / x, where x^3 = x + 1."""
+    """Roberts' R2 points: multiples of 1 / x and of 1 / x^2 modulo 1, where x^3 = x + 1."""
     steps = 1.3247179572447460 ** -np.arange(1.0, 3.0)
     return tuple((0.5 + np.arange(1, count + 1) * step) % 1.0 for step in steps)
 
@@ -42,7 +42,7 @@ LATTICES = {"Fibonacci": fibonacci, "R2": r2, "Hammersley": hammersley}
 
 
 def error(lattice, count, alpha):
-    """Largest relative error of a white lobe's albedo over views and both orders of coordinates."""
+    """Largest relative error of a white lobe's albedo over views, also with swapped coordinates."""
     numbers, found = lattice(count), 0.0
     wo = np.stack([np.sqrt(1.0 - COSINES**2), 0.0 * COSINES, COSINES], axis=-1)[:, None]
     for u in (numbers, numbers[::-1]):

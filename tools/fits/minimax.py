@@ -85,7 +85,7 @@ class Form:
     below: tuple  # monomials of the denominator, without its constant 1
 
     def value(self, variables, coefficients):
-        """Values at arrays of variables. The coefficients of the numerator come first."""
+        """Values of N / D at arrays of variables. Coefficients begin with the coefficients of N."""
         monomials, count = (*self.above, *self.below), len(self.above)
         terms = [c * _monomial(variables, m) for c, m in zip(coefficients, monomials, strict=True)]
         return sum(terms[:count]) / (1.0 + sum(terms[count:]))
@@ -96,7 +96,7 @@ def _monomial(point, exponents):
 
 
 def _samples(form, variables, values, weights):
-    """Monomials of numerator and denominator, value and weight of each point, in 40 digits."""
+    """Each point in 40 digits, as monomials of N, monomials of D, a value, and a weight."""
     for columns in zip(*variables, values, weights, strict=True):
         *point, value, weight = map(mp.mpf, columns)
         above, below = (
@@ -129,7 +129,7 @@ def numerator(form, variables, values, weights, below):
         factor = weight / (1 + mp.fdot(monomials, below))
         rows.append([factor * x for x in above])
         right.append(weight * value)
-    # Shuffle, so that the starting rows of the exchange do not lie on few grid lines.
+    # Shuffle the rows, so that the exchange starts from rows that lie on many grid lines.
     order = sorted(range(len(rows)), key=lambda i: i * SCATTER % 2**32)
     found, _ = least_largest([rows[i] for i in order], [right[i] for i in order])
     return (*(float(mp.nstr(x, DIGITS)) for x in found), *below)

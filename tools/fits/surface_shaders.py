@@ -5,8 +5,8 @@
 
 The layer equation needs the albedo of each lobe. The reference computes albedos by quadrature,
 eonlib by fits. The script evaluates surfaces in both ways in float64, for pairs of directions and
-materials that are drawn as in the checks, but with other seeds. It prints the largest errors due to
-all fits together, of values and albedos and of their means over a set.
+materials that are drawn as in the checks, but with other seeds. The script prints the largest
+errors of values, of albedos, and of means over a set. The errors are due to all fits together.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -71,7 +71,7 @@ def lobe_albedo(points, exact, node, wo, inputs):
 
 
 def _microfacets(wo, inputs, curve):
-    """E_ss F(c) (1 + F_ss (1 - E_ss) / E_ss); `curve` computes F(c) and F_ss from mu and alpha."""
+    """E_ss F(c) (1 + F_ss (1 - E_ss) / E_ss), where `curve` computes F(c) and F_ss."""
     wo, roughness = facets(wo.T, inputs["roughness"].T)
     E = ggx_anisotropic.corrected(wo, roughness)[:, np.newaxis]
     F, average = curve(*ggx_anisotropic.visible(wo, roughness))
@@ -126,7 +126,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Largest errors of values and albedos in a random set, and errors of their means, by name."""
+    """Largest errors of values and albedos in a random set, and errors of the means, by name."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)

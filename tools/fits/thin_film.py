@@ -25,7 +25,7 @@ from mxeon.models import thin_film as film
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.thin_film import SUBSTRATES, TEXT, film_albedo_dir, film_curve
 
-# Ranges of roughness, cosine of the view, thickness in nm, and index.
+# Ranges of roughness, cosine of the view, thickness in nm, and IOR.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 BARE = FILMS | {"thickness": (0.0, 0.0), "index": (1.0, 1.0)}
 VISIBLE = FILMS | {"index": (LEAST_FILM, 2.5)}
@@ -55,12 +55,12 @@ LEAST_PATH = 1e-21  # least path difference in m
 LEAST_LOSS = 1e-12  # least share of escaping light
 # Parameters of the search for the largest error.
 SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # seed, films per step, steps of evolution
-WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films; sizes of steps from these films
+WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films to vary, and sizes of the steps
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
 COLORED = 17  # NUMBERS plus seven for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
 MOVED = 0.3  # share of the COLORED numbers that change in a step
-LEAST = 1e-3  # least number, since 0 reflects nothing; not for roughness, cosine, extinction
+LEAST = 1e-3  # least number except for roughness, cosine and extinction; 0 reflects nothing
 # The worst films of longer searches, which random starts miss: a metal with total reflection in a
 # film of 1000 nm, and glass at grazing below a film of 1000 nm.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
@@ -73,7 +73,7 @@ WHITE = {"color82": 1.0, "color90": 1.0}
 
 
 def shader_curve(category, material, mu, width=0.0):
-    """Mean of a film's curve over cosines around mu with deviation `width`, as in the shader."""
+    """Mean of a film's curve over cosines near mu with standard deviation `width`, as in GLSL."""
     # Evaluate both interfaces at each cosine.
     films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     mu, thickness, n = np.broadcast_arrays(mu, *films)
@@ -129,7 +129,7 @@ def decay(mu, var, opd, spread):
 def order_count(weights, sizes, opd, spread, least):
     """Number of orders that the shader sums, at least 1.
 
-    s-polarized light has the largest reflectances, p-polarized light the largest transmittances.
+    Reflectances are largest for s-polarized light, and transmittances for p-polarized light.
     """
     k2 = np.exp(-2.0 * decay(*NARROWEST[2:], opd, spread))
     along_p, along_s = weights[0], sizes[1]
@@ -155,7 +155,7 @@ def curve_errors(category, material, _, mu):
 
 
 def slopes(category, material, _, mu):
-    """Derivatives of a curve by log(thickness), which scale rounding errors of path differences."""
+    """Derivatives of a curve with respect to log(thickness), for errors of path differences."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -165,7 +165,7 @@ def slopes(category, material, _, mu):
 
 
 def wave_slopes(category, material, _, mu):
-    """Derivatives of a curve by the amplitude of each Gaussian's wave."""
+    """Derivatives of a curve with respect to the amplitude of each Gaussian's wave."""
     thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     opd, matrix = film.path_difference(mu, thickness, index), np.abs(np.array(TEXT.matrix))
     total = 0.0
@@ -195,7 +195,7 @@ def average_errors(category, material, *_):
 
 
 def average(category, material, nodes=NODES):
-    """F_ss as a sum over `nodes`: cosines, weights and widths."""
+    """F_ss as a weighted sum over `nodes`, which have cosines, weights and widths."""
     return sum(
         weight * shader_curve(category, material, np.asarray(mu), width)
         for mu, weight, width in zip(*nodes, strict=True)
@@ -209,7 +209,7 @@ def visible_errors(category, material, alpha, mu):
 
 
 def albedo_errors(category, material, alpha, mu):
-    """Errors of the albedo: `visible_errors`, plus the errors of F_ss times 1 - E_ss."""
+    """Errors of the albedo, which are `visible_errors` plus 1 - E_ss times the errors of F_ss."""
     loss = 1.0 - ggx_albedo_dir(mu, alpha)
     return visible_errors(category, material, alpha, mu) + loss * average_errors(category, material)
 
@@ -220,7 +220,7 @@ def seen_errors(category, material, alpha, mu):
 
 
 def visible_average(category, material, alpha, mu):
-    """Average over the visible facets, as a quotient of two albedos by quadrature."""
+    """Average over the visible facets, as the quotient of two integrated albedos."""
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     inputs = {name: value.T for name, value in material.items()}
     inputs["roughness"] = np.repeat(alpha[:, np.newaxis], 2, axis=1)
@@ -254,7 +254,7 @@ MIRRORS = {
 
 
 def facets(mu, alpha, coefficients):
-    """Mean cosine between visible facets and view, and half width and bend of the nodes."""
+    """Mean cosine between visible facets and view, and the spread and the skew of the nodes."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
     polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
     mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))

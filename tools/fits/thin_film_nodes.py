@@ -21,7 +21,7 @@ START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, wei
 FACETS = 384  # number of films for the fit of the visible facets
 GRID = 16  # views and roughnesses along each side of the grid of moments
 TIE = 2e-2  # weight of the moments, relative to an error of a film
-BEND = 0.33  # b for which nodes a t + b (t^2 - 1) of a semicircle have skewness 1
+BEND = 0.33  # ratio of b to the skewness of nodes a t + b (t^2 - 1), with t in a semicircle
 NEAR = 1e-5  # change of a coefficient for difference quotients
 SCALE = 1e3  # scales squared errors to about 1
 
@@ -59,7 +59,7 @@ def hemisphere():
 
 
 def facets():
-    """Coefficients for visible facets, one Gauss-Newton step from those that match moments."""
+    """Coefficients for visible facets, by one Gauss-Newton step that starts at `moments_fit`."""
     films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
     start = moments_fit()
 
@@ -83,7 +83,7 @@ def grid():
 
 
 def moment_rows(mu, alpha):
-    """Contribution of each coefficient to mean, reach and bend, by view and roughness."""
+    """Contribution of coefficients to the nodes' mean, spread and skew, by view and roughness."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
     terms = fit.monomials(mu, alpha)
     blocks = np.zeros((3, mu.size, 3, len(terms)))
@@ -93,7 +93,7 @@ def moment_rows(mu, alpha):
 
 
 def moments_fit():
-    """Coefficients that best match mean, deviation and skewness of the facets' cosines."""
+    """Coefficients that best match mean, spread and skewness of the facets' cosines."""
     mu, alpha = grid()
     mean, deviation, skewness = facet_moments(mu, alpha)
     b = np.clip(BEND * skewness, -0.8, 0.8)
@@ -104,7 +104,7 @@ def moments_fit():
 
 
 def facet_moments(mu, alpha):
-    """Mean, deviation and skewness of the cosines between 16 visible facets and the view."""
+    """Mean, standard deviation and skewness of cosines between 16 visible facets and the view."""
     cosines, weights = (np.array(each) for each in zip(*sampled_facets(mu, alpha), strict=True))
     weights /= weights.sum(axis=0)
     mean = (weights * cosines).sum(axis=0)

@@ -107,7 +107,7 @@ def model_bins(mu, *inputs):
 
 
 def rows(paths=PATHS):
-    """For each case: albedos of layer, varnished and walk, (3, 5), and ratios of bins, (12, 4)."""
+    """Each case has albedos of layer, varnished and walk, (3, 5), and ratios of bins, (12, 4)."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
         total, out = walk(mu, *inputs, paths)

@@ -46,7 +46,7 @@ class Row:
     """A row of the page without the pictures.
 
     - `entry`: The entry with the largest error among entries with the same cause of failure.
-    - `same`: Library and node of the other entries with that cause.
+    - `same`: Library and node of each other entry with the same cause.
     - `frames`: The scale of the difference map and the largest difference, by scene.
     """
 

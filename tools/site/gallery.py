@@ -35,8 +35,8 @@ SIZE = 512  # width and height of a picture in pixels
 INSET, EDGE = 112, 8  # width of the inset, and distance from the edge, in pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # height of the studio's latitude-longitude map in pixels
-# Soft boxes: azimuth from the viewer and elevation in degrees, half width and half height in
-# degrees, and radiance as RGB.
+# Each soft box has an azimuth from the viewer and an elevation in degrees, a half width and a half
+# height in degrees, and a radiance as RGB.
 BOXES = (
     ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
     ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),
@@ -99,7 +99,7 @@ def studio():
 
 
 def pictures(host, document):
-    """The name, the pictures, and the difference of stock from eonlib for each material.
+    """For each material, the name, the pictures, and the difference between stock and eonlib.
 
     The last picture is made with eonlib. The first picture is made with stock MaterialX, unless
     stock MaterialX cannot generate the material.
@@ -137,7 +137,7 @@ def label(image, place, text, size=22, anchor="ls"):
 
 
 def save(path, pictures, difference_map):
-    """Save pictures side by side, with the difference as an inset. Two pictures get labels."""
+    """Save pictures side by side, with the difference as an inset. A pair is labeled."""
     image = Image.new("RGB", (SIZE * len(pictures), SIZE))
     for number, each in enumerate(pictures):
         image.paste(each, (number * SIZE, 0))

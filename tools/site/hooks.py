@@ -45,7 +45,7 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_page_content(html, page, **_):
-    """Prevent line breaks before units, split pictures of pairs, and adapt links of wall.md."""
+    """Prevent line breaks before units, split side-by-side pictures, and adapt links of wall.md."""
     html = unbroken(html)
     if page.file.src_uri == "wall.md":
         return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')

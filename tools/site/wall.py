@@ -241,7 +241,7 @@ class Wall:
         )
 
     def rough(self) -> str:
-        """Section about rough diffuse nodes, in which equal pictures of a renderer appear once."""
+        """Section about rough diffuse nodes. Equal pictures of the same renderer are shown once."""
         reference = pixels(self.references[PORTRAIT, EON, BACK.name])
         tiles: dict[tuple[str, float], Tile] = {}
         for each in self.images:
@@ -253,7 +253,7 @@ class Wall:
 
     @cached_property
     def materials(self) -> list[tuple[str, str]]:
-        """Materials with pictures of more hosts than half of the largest number of hosts."""
+        """Materials drawn by more than half as many hosts as the most frequently drawn material."""
         hosts = defaultdict(set)
         for document, element, _, host, _ in self.images:
             if document != PORTRAIT:

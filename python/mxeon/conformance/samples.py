@@ -61,7 +61,7 @@ def arrays(inputs: Values) -> dict[str, Array]:
 
 @dataclass(frozen=True)
 class Batch:
-    """Pairs of directions and the node's inputs for them."""
+    """Pairs of directions, and the node's inputs for each pair."""
 
     wo: Array  # directions to the viewer in local frames, (N, 3), on or above the horizon
     wi: Array  # directions to the light in local frames, (N, 3)

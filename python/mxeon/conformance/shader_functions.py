@@ -81,7 +81,7 @@ def exact(function: str) -> tuple[Array, Array]:
 
     The factor is pi cos(theta_i) for a BRDF and 1 for an albedo. For other functions, the factor is
     the inverse of the condition number, which is the larger of 1 and the value, plus the absolute
-    derivative of the value by each argument.
+    derivative of the value with respect to each argument.
     """
     columns = random_columns()
     values = _expected(function, columns)
@@ -179,7 +179,7 @@ def random_columns() -> Columns:
 
 
 def _unit(rng: np.random.Generator) -> Array:
-    """Random multiples of 2^-24 in [0, 1). The first CORNERS are the smallest or the largest."""
+    """Random multiples of 2^-24 in [0, 1). The first CORNERS numbers are 0 or 1 - 2^-24."""
     numbers = rng.integers(0, 1 << 24, POINTS).astype(np.float64)
     numbers[:CORNERS] = (numbers[:CORNERS] % 2.0) * (2.0**24 - 1.0)
     return numbers * 2.0**-24

@@ -33,7 +33,7 @@ from mxeon.shaders.library import load_library
 
 Faults: TypeAlias = tuple[list[Cause], int]  # faults, and number of faults in the control
 Inputs = Mapping[str, expressions.Array]
-# Claim of each check, counted quantity, and mistake of the control.
+# Each row has the claim of a check, the counted quantity, and the mistake in the control.
 # fmt: off
 CLAIMS = {
     "languages": ("The shader functions are identical in OSL and GLSL, apart from type names.",

@@ -187,7 +187,7 @@ class Tolerance:
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:
-        """Divisors of the rows' errors, (N, 1), which exceed 1 if values are large and `scaled`."""
+        """Divisors of the rows' errors, (N, 1). If `scaled`, divisors of large values exceed 1."""
         return _scale(expected) if self.metric is scaled else np.ones((len(expected), 1))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs `mxeon check` on mutants of eonlib, and writes to out/mutants which check detects a mutant.
+"""Runs checks on mutants of eonlib, and writes to out/mutants which check detects each mutant.
 
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
     python -m tools.benchmarks.mutants --seed N [--share 0.1]         some of the operators' mutants

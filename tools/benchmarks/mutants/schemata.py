@@ -63,7 +63,7 @@ ERROR = re.compile(r"\b\d+:(\d+)\(\d+\): error")
 
 @dataclass(frozen=True)
 class Edit:
-    """Text that is inserted around a part of a source or, if `token`, replaces that part."""
+    """Text to insert around a part of a source, or to replace the part if `token` is set."""
 
     start: int
     end: int
@@ -175,7 +175,7 @@ class SchemataHost(gl.GlHost):
         self._program = self._chosen  # type: ignore[assignment]
 
     def take(self, mutants: dict[int, Mutant]) -> None:
-        """Compile `mutants` into all shaders that are compiled later."""
+        """Insert `mutants` into all shaders that are compiled from now on."""
         self.alive = mutants
         self._made.cache_clear()
 
@@ -224,7 +224,7 @@ class SchemataHost(gl.GlHost):
 
 
 def _numbers_at(text: str, error: str) -> set[int]:
-    """Numbers of mutants on the line of each compiler error, or on the last line before."""
+    """Numbers of mutants on the line of a compiler error, or on the nearest earlier line."""
     lines, found = text.splitlines(), set[int]()
     for place in map(int, ERROR.findall(error)):
         numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
@@ -234,7 +234,7 @@ def _numbers_at(text: str, error: str) -> set[int]:
 
 @cache
 def chunk_of(file: str) -> str:
-    """The text of a source after the last include, which shaders contain unchanged."""
+    """The text of a source after the last include. Shaders contain this text unchanged."""
     text = (ROOT / file).read_text(encoding="utf-8")
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
@@ -311,7 +311,7 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects with a title, flag for combinations, text of the shader, and function with checks."""
+    """Subjects, each with a title, a combination flag, shader text, and a function of checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
     # Films are checked before transmission, because transmission runs the same code without a film.
@@ -325,7 +325,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def node_checks(case: Case, turn: int) -> Checks:
-    """Function that runs group `turn`, 0 to 2, of a node's checks."""
+    """A function that runs one of three groups of a node's checks. `turn` selects the group."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
@@ -358,7 +358,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::STRIDE]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Execute a call on the host. A call of all functions is recorded, with fewer points."""
+        """Execute a call on the host. A call of all functions is also stored, with fewer points."""
         if function == functions.EACH:
             self._call = source, function, *(np.asarray(each)[::STRIDE] for each in arguments)
         return self._host.execute(source, function, *arguments)

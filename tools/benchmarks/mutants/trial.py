@@ -39,8 +39,8 @@ CRASHED = "crashed"  # a check ended with a traceback
 TEXT, TESTS = "text", "tests"  # values of `host` for mutants that no host detected
 
 PATH = "genglsl/path/"  # folder of code for path tracers, which no check runs
-# Tests by folder of the mutant. Tests of PATH replace the checks. Other tests run after the checks,
-# because checks on hosts cannot detect all mutants of the folder.
+# Tests of mutants, by folder of the mutated file. For PATH, the tests replace the checks. For other
+# folders, the tests run after the checks, because no check can detect some of the mutants.
 FOLDER_TESTS = {
     PATH: ("tests/shaders/test_path_tracing.py",),
     "genosl/cycles/": ("tests/hosts/test_osl.py",),  # run in Blender's OSL

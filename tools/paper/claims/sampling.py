@@ -35,9 +35,10 @@ def cosine_variance() -> Measured:
     "Fig. 11", "the variance of cosine sampling has a peak", "step over the step before", most=0.9
 )
 def cosine_diverges() -> Measured:
-    """Growth of the variance over a factor of 10 in mu, divided by the previous growth.
+    """Growth of the variance as mu falls by a factor of 10, divided by the previous growth.
 
-    Before a peak, the growth would decrease. Instead, each factor of 10 adds (A r)^2 / 2 ln 10.
+    If the variance had a peak, the growth would decrease before the peak. Instead, each factor of
+    10 adds (A r)^2 / 2 ln 10.
     """
     variances = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
     first, second = np.diff(variances)
@@ -131,7 +132,7 @@ def low_roughness() -> Measured:
 
 @claim("Listing 4", "defined for u1 in [0, 1] and r in [0, 1]", "u1 / P_u", least=0.0, most=1.0)
 def no_number() -> Measured:
-    """Listing 4 divides u1 by P_u if u1 <= P_u, where u1 and P_u can be 0."""
+    """If u1 <= P_u, Listing 4 divides u1 by P_u. If u1 and P_u are 0, the quotient is NaN."""
     with np.errstate(invalid="ignore"):
         u1 = np.float64(0.0) / np.float64(0.0**0.1)
     return f"at r = 0, u1 = 0: P_u = 0, u1 / P_u = {u1}", u1

@@ -46,7 +46,7 @@ def dumped(found: Any, depth: int) -> str:
 
 
 def with_patches(found: dict[str, Any]) -> dict[str, Any]:
-    """Measurements with the shortest change of each patch, which identifies a patched copy."""
+    """Measurements, plus each patch's shortest change, by which patched copies are recognized."""
     return found | {
         page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
         for page, path in patches("materialx").items()
@@ -115,7 +115,7 @@ def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
 
     `strip` is the number of leading path components that are dropped.
     """
-    # Git must ignore a repository around the folder and the configuration of the machine.
+    # Make git ignore repositories that contain the folder, and the machine's configuration.
     alone = {"GIT_CEILING_DIRECTORIES": str(folder.resolve().parent), "GIT_CONFIG_NOSYSTEM": "1"}
     env = os.environ | alone
     command = ["git", "-c", "core.autocrlf=false", "apply", "--unidiff-zero", f"-p{strip}", "-"]

@@ -2,7 +2,7 @@
 """Draws the pictures of the ledger: `python -m tools.site.ledger.pictures`.
 
 Each picture has three parts, rendered on gl: a page's document with the installed MaterialX, the
-document with the page's patch and all patches which that patch needs, and the difference.
+document with the page's patch and all required patches, and the difference.
 """
 
 import sys

@@ -67,7 +67,7 @@ def interval(least: str, most: str) -> str:
 
 
 def value(text: str) -> object:
-    """A default as a text or a tuple of numbers. If all components are equal, the tuple has one."""
+    """A default as a text or a tuple of numbers. Equal components are reduced to one number."""
     try:
         numbers = tuple(map(float, text.split(",")))
     except ValueError:

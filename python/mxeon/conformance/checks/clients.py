@@ -6,8 +6,8 @@ ambient occlusion and transparency. A frame has one state, such as "a point ligh
 AXES, such as "lights". Any two states of different axes occur together in some frame.
 
 No specification describes lights, shadows and alpha, so the expected values follow MaterialX's
-shader code. A light at distance d is divided by (1 + d)^decay, a spot light falls off smoothly
-between two cosines, and shadows use Chebyshev's bound.
+shader code. The intensity of a light at distance d is divided by (1 + d)^decay, a spot light falls
+off smoothly between two cosines, and shadows use Chebyshev's bound.
 """
 
 from collections.abc import Callable, Iterator, Mapping

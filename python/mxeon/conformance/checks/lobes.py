@@ -164,7 +164,7 @@ ZEROS = (*product(["throughput"], BRANCHES), *product(["response"], ["transmissi
 
 
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
-    """Outputs of an opaque node: a throughput must be 1 - weight, any other output must be 0.
+    """Outputs of an opaque node. Throughputs must be 1 - weight, and other outputs must be 0.
 
     Hair has no input `weight`; the weight of hair counts as 1.
     """
@@ -372,9 +372,10 @@ def unsigned(batch: Batch) -> Batch:
 def negative(case: Case) -> Iterator[Compared]:
     """Compare the light for a color with a negative red channel with the expected light.
 
-    Some nodes treat negative red as 0; other nodes return minus the light for positive red. EON's
-    light is a rho + b rho^2 / (1 - rho (1 - <E>)), where <E> is the average albedo of FON. The
-    coefficients a and b follow from the light for rho and the light for rho / 2.
+    Some nodes treat negative red as 0. For other nodes, the red light is the negative of the light
+    for the opposite, positive red. The light of EON is a rho + b rho^2 / (1 - rho (1 - <E>)), where
+    <E> is the average albedo of FON. The coefficients a and b follow from the light for rho and the
+    light for rho / 2.
     """
     quantities = [(case.backend.direct, case.direct)]
     if not family(HairSpec)(case.spec):  # MaterialX computes hair's albedo from unclamped tints

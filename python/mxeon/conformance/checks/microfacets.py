@@ -295,7 +295,7 @@ CLIENT = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 
 
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
-    """Compare light by the methods of each known client with light that all methods must return."""
+    """Compare the light of each known client's methods with the light that is correct for all."""
     transmits = TRANSMITTING(case.spec)
     if transmits:  # the methods of Storm, then those of MaterialXView
         clients = [Methods("prefilter", "opacity"), Methods("prefilter", "refraction")]

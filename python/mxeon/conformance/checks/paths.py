@@ -404,7 +404,7 @@ def path_value(case: Case) -> Iterator[Compared]:
             # Use +z or -z of the frame, because the node graph rotates tangents about the normal.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
-        # A rasterizer cannot view lobes that have an IOR from inside a solid.
+        # Rasterizers cannot draw the inside of a solid, so skip inside views if there is an IOR.
         inside = np.zeros(count) if INDEXED(case.spec) else np.arange(count) % 2
         values = partial(
             text.values,

@@ -275,8 +275,8 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
         unsupported.add("inputs from an image")
     if "frame" in unsupported:
         unsupported.add(TURNED_SKY)
-    # Skip the dim, two-sided environment if the effect is unknown: surface shaders do not expose
-    # their tints, and light that passes by opacity ignores the environment's intensity.
+    # Skip the dim, two-sided environment if the effect is unknown. Surface shaders do not expose
+    # the tints of lobes, and light that passes by opacity ignores the environment's intensity.
     if Ability.MATERIAL in lobe.requires or backend.host.active.transmission == "opacity":
         unsupported.add(TWO_SIDED)
     axes = tuple(
@@ -343,8 +343,8 @@ def states(case: Case) -> Iterator[Compared]:
         yield Compared(pixels.batch, measured[number], expected)
 
 
-# Layouts of pixels in a picture with two rows: 2 x 2 squares, transposed 2 x 2 squares, or far
-# apart, so that no two pixels of the same square are neighbors.
+# Layouts of pixels in a picture with two rows. SQUARES and TRANSPOSED form 2 x 2 squares. In the
+# layout APART, no two pixels of the same square are neighbors.
 SQUARES, TRANSPOSED = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1))
 APART = (-1, EACH), (1, 0)
 

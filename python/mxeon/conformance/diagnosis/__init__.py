@@ -53,7 +53,7 @@ REMAINING = 0.1  # smallest share of the light that a cure may leave
 # An explanation is complete if the distance between explained and measured values is below SAME
 # times the distance of every other explanation. The factor for a near explanation is NEAR.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # a near model must be closer than this share of the expected model's distance
+FAR = 0.2  # largest distance of a near model, relative to the distance of the expected model
 NAMED = 0.5  # largest distance of a named model, relative to the distance of black values
 INEXACT = 30.0  # errors up to this many tolerances count as inaccuracy of the expected model
 LEAST_LIGHT = 1e-3  # cosine of the light up to which faults of the cosine look alike

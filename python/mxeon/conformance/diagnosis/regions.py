@@ -26,10 +26,10 @@ UNREPORTED = ("normal", "tangent", "curve_direction", "position", "surface_norma
 USUAL = {"weight": np.ones(1), "occlusion": np.ones(1)}  # defaults of inputs that a batch lacks
 CHANNELS = "red", "green", "blue"
 EXACT = count_of(Quantity.VALUES)
-# A reported range of an input contains all wrong values, and at most a share of all correct values:
-# usually RIGHT, or WEAK if the input is known to be the cause.
+# A reported range of an input contains all wrong values. The range contains at most the share RIGHT
+# of all correct values, or WEAK if the input is known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
-CLEARER = 0.5  # factor by which a range with two ends must undercut the share of other ranges
+CLEARER = 0.5  # factor of RIGHT and WEAK for a range that is limited at both ends
 CHANCE = 12.0  # smallest log odds against finding a range by chance
 LARGEST = 0.6  # largest share of all pairs or values that a reported region may contain
 DENSITY = 0.1  # smallest share of wrong pairs in a region
@@ -117,7 +117,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
 
 
 def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
-    """Parts of an input for which a range is sought: keys of `words.PARTS`, each with numbers.
+    """Parts of an input for which a range is sought, each a key of `words.PARTS` with numbers.
 
     - `wrong`: Mask of the color channels with wrong values.
     """

@@ -185,7 +185,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
 
 
 def column(values: ArrayLike) -> Array:
-    """Numbers as a column, (N, 1); colors, (N, 3), stay unchanged."""
+    """Numbers become a column, (N, 1). Colors, (N, 3), stay unchanged."""
     array = np.asarray(values, np.float64)
     return array if array.ndim == 2 else array.reshape(-1, 1)
 

@@ -205,7 +205,7 @@ class ShadingPoints:
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at each view; for one material all over a picture, a series replaces integrals."""
+        """Albedo at each view. If a picture has a single material, a series replaces integrals."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:
@@ -363,7 +363,7 @@ def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
 
 
 def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
-    """Value of an input: numbers as (1,) or (N,), others as (1, C) or (N, C) with C components.
+    """Value of an input: (1,) or (N,) for a number, and (1, C) or (N, C) for C components.
 
     Where the lobe's weight is 0, the value may be NaN, so the value of another point is used.
     """

@@ -35,7 +35,7 @@ NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 # Exit status of a run for each verdict.
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
-# Replaces the path of a document in pictures of one material of each node.
+# Name of the document in sample pictures of nodes, which belong to no document.
 PORTRAIT = "portrait"
 SOURCE = "source"  # replaces the host in checks of text, which need no host
 SHADER_FUNCTIONS = "shader twins"  # replaces the node in checks of a library's functions

@@ -50,7 +50,7 @@ class Issue:
     # Library whose results show the defect: EONLIB for a defect of graphs, because graphs need
     # correct lobes, and RENDERER_NODES for a defect of a renderer's own nodes.
     library: str = STOCK
-    unavoidable: bool = False  # no library can repair the defect, so that every library has it
+    unavoidable: bool = False  # whether every library has the defect, which no library can repair
     differs: bool = False  # the specification permits both behaviors
     rows: tuple[Row, ...] = ()  # results that all fail and that the page's table lists
     # Other results that may fail or differ due to the defect, on hosts with the defect.

@@ -225,7 +225,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
         notes.append((warning, "every result"))
-    places: dict[str, list[str]] = {}  # note -> places that the note does not name
+    places: dict[str, list[str]] = {}  # subjects by note, unless the note names the subject
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).extend([] if place in text else [place])
     hosts = tuple(dict.fromkeys(host for each in done for host in each.hosts))

@@ -258,7 +258,7 @@ class EmittingSurface(spec.ValueSpec):
         text = nodes.node_text("uniform_edf", "EDF", "emission", color)
         ports = EMITTED + nodes.input_text("opacity", "float", (inputs or {}).get("opacity", 1.0))
         if self.has_bsdf:
-            text += nodes.node_text(nodes.OREN_NAYAR, "BSDF", "lobe")  # unlit, so black
+            text += nodes.node_text(nodes.OREN_NAYAR, "BSDF", "lobe")  # an unlit lobe is black
             ports += nodes.connection_text("bsdf", "BSDF", "lobe")
         return nodes.document_text(
             text + nodes.node_text("surface", "surfaceshader", "shading", ports)

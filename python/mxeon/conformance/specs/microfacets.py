@@ -76,7 +76,8 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average of a film's reflectance is worst for a bubble, a film around an IOR of 1.
+# MaterialX's average of a film's reflectance is worst for a bubble, which is a film around a medium
+# of IOR 1.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
@@ -483,7 +484,7 @@ TRANSMISSION_SPECS = tuple(
 # tools/fits/thin_film.py. Shaders average a film's reflectance over visible facets, and over the
 # hemisphere for F_ss, by sums over three cosines each.
 FILM_SEEN = 7.82e-2
-FILM_OILED = 6.92e-2  # the same error for films with an IOR of at least 1.25
+FILM_OILED = 6.92e-2  # error of a film's albedo for films with an IOR of at least 1.25
 FILM_PHASE = 71.0  # largest phase of the first order, in radians, at 1000 nm and an IOR of 2.5
 CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 in a phase, times the curve's slope 9.5, plus 16 in the curve
 

@@ -42,7 +42,7 @@ FREE_PATHS = ("subsurface_radius", "subsurface_scale", "subsurface_radius_scale"
 
 
 def ports_by_range(**names: str) -> tuple[Input, ...]:
-    """Inputs with ranges of RANGES; an argument `key="name1 name2"` gives two inputs one range."""
+    """Inputs with ranges from RANGES. `key="name1 name2"` gives two inputs the range of `key`."""
     rows = ((key, name) for key, words in names.items() for name in words.split())
     return tuple(replace(RANGES[key], name=name) for key, name in rows)
 
