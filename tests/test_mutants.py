@@ -46,6 +46,11 @@ def test_every_mutant_has_a_name_of_its_own_and_changes_the_sources():
     assert [path for path in tests if not path.is_file()] == []
 
 
+def test_every_listed_survivor_is_a_mutant_of_the_operators():
+    changes = set(map(operators.change, operators.every()))
+    assert operators.known_survivors().keys() - changes == set()
+
+
 def test_every_source_and_every_document_of_implementations_has_mutants():
     files = [path for folder in FOLDERS for path in (trial.ROOT / folder).rglob("*.*")]
     sources = {file.relative_to(trial.ROOT).as_posix() for file in files}

@@ -74,18 +74,24 @@ def _digest(mutant: Mutant) -> tuple[str, str]:
     return mutant.file, "".join(mutant.texts()[mutant.file].split())
 
 
+def known_survivors() -> dict[tuple[str, str], str]:
+    """The reasons in SURVIVORS, by file and change."""
+    listed = tomllib.loads(SURVIVORS.read_text(encoding="utf-8"))["survivors"]
+    return {(group["file"], line): group["reason"] for group in listed for line in group["lines"]}
+
+
+def change(mutant: Mutant) -> tuple[str, str]:
+    """The file of a mutant, and its change as SURVIVORS lists changes."""
+    return mutant.file, " ".join(f"{mutant.old} => {mutant.new}".split())
+
+
 @cache
 def every() -> tuple[Mutant, ...]:
     """All mutants of the operators. Known survivors have a reason from the table or SURVIVORS."""
     table = {_digest(each): each.reason for each in read_table() if each.survives}
-    listed = tomllib.loads(SURVIVORS.read_text(encoding="utf-8"))["survivors"]
-    reasons = {
-        (group["file"], line): group["reason"] for group in listed for line in group["lines"]
-    }
-    found = []
+    reasons, found = known_survivors(), []
     for each in (each for name in files() for each in mutants_of(name)):
-        change = " ".join(f"{each.old} => {each.new}".split())
-        reason = table.get(_digest(each)) or reasons.get((each.file, change))
+        reason = table.get(_digest(each)) or reasons.get(change(each))
         found.append(replace(each, reason=reason, survives=True) if reason else each)
     return tuple(found)
 
