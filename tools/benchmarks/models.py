@@ -39,7 +39,7 @@ def models(wo, wi, material):
 
 
 def traced(wo, wi):
-    """Functions compiled by JAX that evaluate the models with one material. Empty without JAX."""
+    """Functions, compiled by JAX, that evaluate the models with one material; none without JAX."""
     try:
         import jax
     except ImportError:

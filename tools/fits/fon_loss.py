@@ -35,7 +35,7 @@ def closed_form(mu):
 
 
 def fitted(mu, p, q):
-    """The fit of H(mu), with the operations of the shaders in the precision of `mu`."""
+    """The fit of H(mu), computed in the precision of `mu` by the operations of shaders."""
     one = mu.dtype.type(1.0)
     m = one - mu
     S = np.sqrt(m * (one + mu))

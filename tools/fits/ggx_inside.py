@@ -45,7 +45,7 @@ from mxeon.shaders.functions import source_file
 SEED, COUNT = 5, 2500  # random views and roughnesses
 LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
-POWERS = (4, 8, 16)  # halves of exponents of successive p-norms, which approach the largest error
+POWERS = (4, 8, 16)  # half the exponents of successive p-norms, which approach the largest error
 SCALE = 30.0  # scales errors to about 1
 
 

@@ -328,9 +328,9 @@ def filmed(category, ranges, unit):
 def largest(errors, ranges, category, numbers=NUMBERS):
     """Search for the largest error of films within ranges.
 
-    The search takes decreasing steps from the worst of random films and a known film, then evolves
-    the worst of all films. If COLORED numbers describe a film, more films take part, and a step
-    changes only some numbers.
+    The search takes decreasing steps from the worst of random films and a known film, then runs
+    differential evolution from the worst of all films. If COLORED numbers describe a film, more
+    films take part, and a step changes only some numbers.
     """
     rng = np.random.default_rng(SEED)
     many = numbers > NUMBERS

@@ -27,10 +27,10 @@ ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def interface(w, alpha, ior, rng):
-    """Directions, z >= 0, in which light from w leaves the facets, and whether it leaves below."""
+    """Directions, z >= 0, in which light from w leaves the facets, and a mask of transmissions."""
     out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
-    # State of each path: index, direction, share of the facets' heights below the path, and whether
-    # the path is below the facets.
+    # State of each path: number of the path, direction, share of the facets' heights below the
+    # path, and whether the path is below the facets.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:
         # The distance to the next facet depends on Lambda, which is negative downwards:
@@ -58,7 +58,7 @@ def interface(w, alpha, ior, rng):
 
 
 def walk(mu, roughness, alpha, ior, paths=PATHS):
-    """Light that each path returns for each of RHO, (paths, 5), and its direction, (paths, 3)."""
+    """Light that a path returns for each of RHO, (paths, 5), and final directions, (paths, 3)."""
     rng = np.random.default_rng(SEED)
     out, below = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
     total, weight = np.where(below, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0

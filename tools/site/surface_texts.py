@@ -35,7 +35,7 @@ OPTIONS = [word for name in NAMES for word in ("--node", name)]
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
 )
-# Statements without a check, as specification, section, statement and reason.
+# Statements without a check. Each row has specification, section, statement and reason.
 # fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),
@@ -76,7 +76,7 @@ def rows(
 
 
 def actual_form(result: Result) -> str:
-    """The formula that a shader uses instead of the specification's, with the error, or ""."""
+    """A formula by which a shader deviates from the specification, with the error, or ""."""
     if result.verdict == PASSED:
         return ""
     cause = result.diagnosis.first

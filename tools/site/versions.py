@@ -28,7 +28,7 @@ def record(versions):
     """Data for pages of the site, computed from the results in `versions`, by version.
 
     - `nodes`: Number of results by library, version, node and verdict. Sentences of specifications
-      of surface shaders are not counted, because surfaces.md has these verdicts.
+      of surface shaders are not counted, because surfaces.md has the verdicts on sentences.
     - `open`: Subjects for which eonlib does not pass, by version and by check and verdict.
     - `pages`: Whether all rows of a ledger page pass, by page and version, for pages about
       MaterialX on gl or about texts in MaterialX.

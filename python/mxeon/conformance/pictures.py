@@ -303,10 +303,10 @@ def _judge_material(
 def _input_at_fault(
     shader: Shader, host: Host, judge: Reference, scenes: Sequence[Scene]
 ) -> Diagnosis:
-    """The input without which a renderer's own material is nearest to the reference."""
+    """The input whose removal brings a renderer's own material nearest to the reference."""
     small = [replace(scene, size=64) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
-    # Largest difference from the reference without each input. The name "" removes no input.
+    # Largest difference from the reference after an input is removed. The name "" removes none.
     errors: dict[str, float] = {}
     for name in ("", *names):
         document = mx.createDocument()

@@ -49,7 +49,7 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """These counts for seed 1, else up to 1/8 fewer, so that shaders cannot expect a count."""
+        """Counts, up to 1/8 smaller unless the seed is 1, so that shaders cannot expect a count."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})

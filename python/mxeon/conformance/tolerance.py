@@ -183,7 +183,7 @@ class Tolerance:
         return replace(self, terms=(*self.terms, *terms))
 
     def term(self, words: str, factor: float = 1.0) -> Term:
-        """This tolerance as a term of another tolerance."""
+        """The tolerance as a term of another tolerance."""
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:

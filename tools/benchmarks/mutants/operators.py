@@ -56,7 +56,7 @@ OPERATORS = {
 
 
 def made(seed: int, share: float) -> tuple[Mutant, ...]:
-    """A random sample of the fraction `share`, in (0, 1], of the operators' mutants.
+    """A random fraction `share`, in (0, 1], of the operators' mutants.
 
     A mutant is chosen by a hash of the seed and the mutant, so other mutants do not affect the
     choice.

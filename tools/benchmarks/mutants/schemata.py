@@ -91,7 +91,8 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
     if operator == "product" and (last := _operand(code, end)):
         return [wrapped(end, last, "over")]
     if operator == "comparison":
-        # The result is compared with the uniform, and so is inverted if this mutant is selected.
+        # Compare the result with the selection of the mutant, so that a selected mutant inverts the
+        # result.
         return [Edit(start, _end(code, end), "", f" != {on}")]
     if operator == "channel":
         old, new = (CHANNELS[each[1]] for each in (found, put))
@@ -264,7 +265,7 @@ Subject = tuple[str, bool, str, Checks]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """Results by mutant: the check and subject that detect the mutant, SURVIVED or UNWRITTEN."""
+    """Results by mutant: SURVIVED, UNWRITTEN, or the check and subject that detect the mutant."""
     twins = [each for each in mutants if each.file in OSL_TWINS]
     glsl = [each for each in mutants if each.file.startswith("genglsl/")]
     numbered = dict(enumerate((m for m in glsl if not m.file.startswith(NOT_CHECKED)), 1))
@@ -283,7 +284,7 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def differs_from_glsl(mutant: Mutant) -> bool:
-    """Whether a mutated OSL function or constant differs from GLSL, so `languages` must fail."""
+    """Whether a mutated OSL function or constant differs from GLSL, which a check must report."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (functions.parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl

@@ -336,7 +336,7 @@ def pdf(case: Case) -> Measurement:
 
 
 def parts(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Compare weight times density with value, and density with material_pdf; find unsampled light.
+    """Compare weight times density with value, and density with material_pdf. Find unsampled light.
 
     Each comparison is paired with the cause to report. Measured values are divided by expected
     values, and errors are divided by the amplification of roundings.

@@ -502,7 +502,7 @@ def shared(wrong: Mask, states: Sequence[set[str]]) -> results.Cause:
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
-    """Names of states except the first state of each axis, and of groups named before a colon."""
+    """Names of groups, which precede a colon, and of states except the first state of an axis."""
     first = {next(iter(each)) for each in axes.values()}
     parts = [state.split(":") for state in states if state not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}

@@ -228,7 +228,7 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
 
 @cache
 def _is_repaired(issue: Issue, materialx: str) -> bool:
-    """Whether the MaterialX in a folder, by default the installed one, has an issue's patch."""
+    """Whether MaterialX in a folder, by default the installed MaterialX, has an issue's patch."""
     if not issue.patch:
         return False
     import MaterialX as mx

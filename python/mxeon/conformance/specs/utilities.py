@@ -83,7 +83,7 @@ def _shares() -> Array:
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
-# Errors of an engine's 20th and 22nd powers in [0, 1], and of logarithms of numbers below 1.
+# Errors of an engine's x^20 and x^22 for x in [0, 1], and of logarithms of numbers below 1.
 _power_error = spec.POWER.error(lambda: (_shares(), np.resize([22.0, 20.0], FEWER + 1)), 0.0)
 _logarithm_error = spec.LOGARITHM.error(
     lambda: [float32(LEAST_LOGARITHM ** (1.0 - _shares()))], 0.0
