@@ -118,7 +118,7 @@ def option_text(value: str) -> str:
 
 
 def write_dome(path: Path) -> None:
-    """Write half a sphere as OBJ. Software renders its 60 faces much faster than 3600 faces."""
+    """Write half a sphere of 60 faces as OBJ. Software renders 60 faces faster than 3600 faces."""
     rings, sectors = 5, 12
     lines = []
     for ring, sector in np.ndindex(rings + 1, sectors + 1):

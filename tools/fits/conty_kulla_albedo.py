@@ -97,7 +97,7 @@ def fit():
 
 if __name__ == "__main__":
     found = fit()
-    mu, roughness, E = points(75)  # a finer grid than that of the fit
+    mu, roughness, E = points(75)  # a finer grid than the grid of the fit
     largest = np.max(np.abs(fitted(mu, roughness, found) - np.minimum(E, 1.0)))
     print(*printed(found))
     print(f"largest absolute error {largest:.3g}")

@@ -3,11 +3,11 @@
 
     python -m tools.fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine and have no other parameters. Their form
-is x = p + sum(a_k B_k(p)), where p is a root of the random number, chosen so that x(p) is analytic.
-Values at p = 0 and 1 are exact for any coefficients. Newton steps, each a linear minimax fit,
-minimize the largest relative error of the density. The fits need the exact density, but not the
-exact inverse distribution.
+Two inverse distributions map a random number to a cosine and have no other parameters. The inverse
+distributions have the form x = p + sum(a_k B_k(p)), where p is a root of the random number, chosen
+so that x(p) is analytic. Values at p = 0 and 1 are exact for any coefficients. Newton steps, each a
+linear minimax fit, minimize the largest relative error of the density. The fits need the exact
+density, but not the exact inverse distribution.
 
 ROOT, which only shaders use, holds the coefficients of a polynomial for y = (K / K(pi / 2))^(2/5)
 at a given cosine, where y is analytic in m = 1 - cos. Without the polynomial, shaders would need an

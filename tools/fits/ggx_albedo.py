@@ -120,7 +120,7 @@ def fit():
 
 
 def largest_error(coefficients, across=145, along=97):
-    """Largest absolute error of E_ss on a finer grid than that of the fit."""
+    """Largest absolute error of E_ss on a finer grid than the grid of the fit."""
     mu, alpha = points(across, along)
     return float(np.max(np.abs(fitted(mu, alpha, coefficients) - albedo(mu, alpha))))
 

@@ -66,7 +66,7 @@ def view(mu):
 
 
 def albedo(mu, alpha, ior):
-    """Directional albedo without compensation. For index 0, the albedo is E_ss."""
+    """Directional albedo without compensation. For an IOR of 0, the albedo is E_ss."""
     roughness = np.stack([alpha, alpha], axis=-1)
     return np.ravel(dielectric_albedo_dir(view(mu), 1.0, roughness, ior, compensate=False))
 

@@ -22,9 +22,9 @@ from mxeon.shaders.functions import source_file
 mp = MPContext()
 mp.dps = 40
 
-EXCHANGES = 500  # maximum number of exchanges; fits in this folder need a tenth of them
+EXCHANGES = 500  # maximum number of exchanges, ten times the number that fits in this folder need
 DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 resolves
-SCATTER = 2654435769  # 2^32 / golden ratio; its multiples modulo 2^32 are evenly scattered
+SCATTER = 2654435769  # 2^32 / golden ratio, whose multiples modulo 2^32 are evenly scattered
 STEPS = 2  # Newton steps from coefficients with six digits; a third step changes no printed error
 
 
@@ -123,7 +123,7 @@ def refined(form, variables, values, weights, start):
 
 
 def numerator(form, variables, values, weights, below):
-    """Minimax coefficients of the numerator for the denominator `below`, followed by `below`."""
+    """Minimax coefficients of N if D has the coefficients `below`, followed by `below`."""
     rows, right = [], []
     for above, monomials, value, weight in _samples(form, variables, values, weights):
         factor = weight / (1 + mp.fdot(monomials, below))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Backends: classes that evaluate a MaterialX node on a rendering engine.
+"""Backends, which are classes that evaluate a MaterialX node on a rendering engine.
 
 Some engines evaluate arbitrary pairs of directions. Other engines return closures, render one pair
 of directions per pixel, or render pictures of a sphere. A backend draws the samples and adds the

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A case: a node on an engine with a library, and its measured and expected values.
+"""A case is a node on an engine with a library, with measured and expected values.
 
 A negative control is the same case with wrong inputs or outputs.
 """

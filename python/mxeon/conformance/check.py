@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A check: a claim, a measurement of a case, a tolerance, and a control that must fail.
+"""A check has a claim, a measurement of a case, a tolerance, and a control that must fail.
 
 A check passes if the error is at most the tolerance, and if the check fails on its control, which
 is the same case on the same engine with wrong inputs or outputs.

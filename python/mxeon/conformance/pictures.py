@@ -342,8 +342,7 @@ def _judge_match(
 ) -> Result:
     """The result for a material that the models cover. All pixels must match the reference.
 
-    The error and the tolerance are those of the picture whose ratio of error to tolerance is
-    largest.
+    The error and the tolerance belong to the picture with the largest ratio of error to tolerance.
     """
     errors = [_errors(case) for case in cases]
     allowed = [case.tolerance.value for case in cases]
@@ -466,8 +465,8 @@ PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 def comparison_pictures(case: Case) -> tuple[Picture, ...]:
     """Pictures of a rough diffuse node in light from the side and from behind, with references.
 
-    There are no pictures of other nodes or of a surface shader's lobe, or on renderers in which
-    each pixel shows one pair of directions. Pixels near the rim and the terminator are black in all
+    No pictures are drawn of other nodes, of a surface shader's lobe, or by renderers in which each
+    pixel shows one pair of directions. Pixels near the rim and the terminator are black in all
     pictures.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)

@@ -118,7 +118,7 @@ AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0)
 Columns = Mapping[str, Array]
 
 
-# NumPy functions whose names or orders of arguments differ from those of the shader functions.
+# NumPy functions with other names or other orders of arguments than the shader functions.
 NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),

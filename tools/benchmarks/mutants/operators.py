@@ -81,7 +81,7 @@ def known_survivors() -> dict[tuple[str, str], str]:
 
 
 def change(mutant: Mutant) -> tuple[str, str]:
-    """The file of a mutant, and its change as SURVIVORS lists changes."""
+    """The file of a mutant, and the mutant's change in the notation of SURVIVORS."""
     return mutant.file, " ".join(f"{mutant.old} => {mutant.new}".split())
 
 

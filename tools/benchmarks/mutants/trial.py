@@ -51,7 +51,7 @@ FOLDER_TESTS = {
     ),
 }
 LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, which no file includes
-NOISY = ("environment", "furnace")  # slowest checks on Cycles, which run last
+NOISY = ("environment", "furnace")  # slowest checks on Cycles; run these checks last
 # Files that no shader for gl contains, so that the gl host cannot detect mutants in these files.
 ON_CYCLES = ("genosl/",)
 CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures, which only the host osl evaluates

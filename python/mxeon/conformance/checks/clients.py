@@ -155,7 +155,7 @@ def shadow(client: Client, position: Array) -> Array:
 
 
 def light(client: Client, methods: Methods, normal: Array) -> Array:
-    """Radiance of a white, matte unit sphere, (N, 3); each position equals the normal there."""
+    """Radiance of a white, matte unit sphere, (N, 3), at positions that equal the normals."""
     total = np.zeros_like(normal)
     for number, lamp in enumerate(client.lamps):
         direction, irradiance = lamp_light(lamp, normal)
@@ -168,7 +168,7 @@ def light(client: Client, methods: Methods, normal: Array) -> Array:
 
 
 def drawn(case: Case) -> Iterator[tuple[set[str], Compared]]:
-    """Compare colors, then alphas, of each frame; yield the names of the frame's states as well.
+    """Compare colors and then alphas of each frame, and yield the names of the frame's states.
 
     If alphas are compared, the names include "alpha".
     """

@@ -297,7 +297,7 @@ CLIENT = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
     """Compare the light of each known client's methods with the light that is correct for all."""
     transmits = TRANSMITTING(case.spec)
-    if transmits:  # the methods of Storm, then those of MaterialXView
+    if transmits:  # methods of Storm, then methods of MaterialXView
         clients = [Methods("prefilter", "opacity"), Methods("prefilter", "refraction")]
         if CLEAR(case.spec):  # shaders of mode RT also contain the code of mode T
             clients += own_lookups(case)

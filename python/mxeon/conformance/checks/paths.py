@@ -71,8 +71,8 @@ FUNCTIONS = {
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # shader languages of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
 ANSWERS = cache.Recent[Array](64)  # cache for a check and the check's control
-# Views of a solid. From inside, two views see many or few facets below the critical angle; at the
-# third view, no light leaves a smooth solid.
+# Views of a solid. From inside, many facets are below the critical angle for one view, and few for
+# the next. At the third view, no light leaves a smooth solid.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 # Smallest value that must be sampled. Smaller values may be missed, because a sheen's fitted albedo

@@ -2,8 +2,8 @@
 """Explains a failed check by another model, by a mistake in the inputs, or by a region of errors.
 
 A candidate is a function that may have computed a node's values, such as another model. A fault is
-a mistake between a node's inputs and the node's model, such as an ignored weight. A region is a set
-of direction pairs, or a range of an input, that contains all wrong values.
+a mistake of a shader that uses a correct model, such as an ignored weight. A region is a set of
+direction pairs, or a range of an input, that contains all wrong values.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults: mistakes between a node's inputs and the node's model, such as an ignored weight."""
+"""Faults: mistakes of a shader that uses a correct model, such as an ignored weight."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace

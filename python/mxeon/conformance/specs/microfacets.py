@@ -222,7 +222,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The batches of any lobe, and a batch near the mirror direction; alphas are equal."""
+        """The batches of any lobe, and a batch near the mirror direction. Alphas are equal."""
         batches = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*batches, self.mirrored(counts)[0]))
 
@@ -612,7 +612,7 @@ class FilmSpec(FacetSpec):
         return super().values(function, batch.altered(thinfilm_ior=index))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, special pairs, and lights near the mirror direction; no grazing facets."""
+        """Random pairs, special pairs, and pairs near the mirror direction. No facet is grazing."""
         rng, count = generator(), counts.pairs
         special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
