@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node absorption_vdf: Beer's law for one meter of the medium, since a surface has no thickness.
+// Node absorption_vdf: transmittance of one meter of a medium, by Beer's law.
 
 #include "lib/medium.glsl"
 

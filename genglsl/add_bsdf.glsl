@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node add for BSDFs. The throughput 1 - E is negative if the albedo E exceeds 1.
+// Node add for two BSDFs. The throughput is 1 minus the sum of their albedos and may be negative.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

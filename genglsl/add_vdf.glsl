@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node add for media: coefficients add, transmittances multiply.
+// Node add for two media. Coefficients are added, so transmittances are multiplied.
 
 #include "lib/medium.glsl"
 

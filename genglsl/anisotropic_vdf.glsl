@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node anisotropic_vdf: the transmittance of one meter that absorbs and scatters. The anisotropy
-// has no effect, because light scattered into the ray is ignored.
+// Node anisotropic_vdf: transmittance of one meter that absorbs and scatters. Light scattered into
+// the ray is ignored, so the anisotropy has no effect.
 
 #include "lib/medium.glsl"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// blackbody node: the color of a black body in linear Rec. 709, with luminance 1.
+// Node blackbody: color of a black body in linear Rec. 709, with luminance 1.
 
-// X and Z of a black body with Y = 1 are rational functions N / D of t = 1000 K / T.
-// Source: tools/fits/blackbody.py. Domain: [800, 25000] K. Largest absolute errors: 2.6e-5 and
-// 6.7e-5.
+// Fits of the XYZ values X and Z of a black body with Y = 1 at temperature T: quotients N / D of
+// polynomials in t = 1000 K / T. Source: tools/fits/blackbody.py. Domain: [800, 25000] K. Largest
+// absolute errors: 2.6e-5 of X, 6.7e-5 of Z.
 #define BLACKBODY_X_N0 1.0227899
 #define BLACKBODY_X_N1 2.9880568
 #define BLACKBODY_X_N2 15.714266
@@ -45,8 +45,8 @@ float blackbody_Z(float t)
     return N / D;
 }
 
-// XYZ to linear Rec. 709 by IEC 61966-2-1. Negative blue (below 1900 K) and green (below 964 K)
-// become 0. The luminance is scaled to 1.
+// XYZ to linear Rec. 709 by IEC 61966-2-1. Negative blue (below 1900 K) and green (below 964 K) are
+// clamped to 0.
 void blackbody_rec709(float temperature, out vec3 result)
 {
     float t = 1000.0 / clamp(temperature, 800.0, 25000.0);

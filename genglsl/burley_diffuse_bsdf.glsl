@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node burley_diffuse_bsdf, whose albedo has a closed form.
+// Node burley_diffuse_bsdf.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
 #include "lib/half_vector.glsl"
 
-// Directional albedo at unit reflectance; see burley_albedo_dir in mxeon.models.
+// Directional albedo for color 1: burley_albedo_dir in python/mxeon/models/diffuse.py.
 float burley_albedo_dir(float mu, float roughness)
 {
     float r = roughness;
@@ -20,9 +20,8 @@ float burley_albedo_dir(float mu, float roughness)
 void burley_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
                          inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // share that reaches the layer below
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));
 
-    // A weight of 0 or less turns the lobe off.
     if (weight <= 0.0)
     {
         return;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point and lobes of chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model.
+// Node chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model.
 //
-// The least roughness is 1e-8 rad^2 along the fiber and 1e-4 rad around it, because float32 has no
-// narrower lobes. In the local frame, x runs along the fiber, z along the normal.
+// Roughness is at least 1e-8 rad^2 along the fiber and 1e-4 rad around it, because float32 has no
+// narrower lobes. In the local frame, x is the fiber and z is the normal.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
 
-// exp(-x) I_0(x) for x >= 0: [AbramowitzStegun1964], 9.8.1 and 9.8.2. Relative error: 5e-7.
+// Scaled Bessel function exp(-x) I_0(x) for x >= 0: [AbramowitzStegun1964], 9.8.1 and 9.8.2.
+// Relative error: 5e-7.
 float chiang_hair_bessel(float x)
 {
     float t = x / 3.75;
@@ -23,7 +24,8 @@ float chiang_hair_bessel(float x)
           + t * (-0.01647633 + t * 0.00392377)))))))) / sqrt(x);
 }
 
-// 2 v sinh(1 / v) exp(-1 / v), by a series up to the eighth power if v >= 1. Relative error: 3e-8.
+// Norm of M_p for variance v, 2 v sinh(1 / v) exp(-1 / v). If v >= 1, sinh is a series. Relative
+// error: 3e-8.
 float chiang_hair_norm(float v)
 {
     float u = 1.0 / v;
@@ -33,8 +35,8 @@ float chiang_hair_norm(float v)
                      * (1.0 + u2 / 6.0 * (1.0 + u2 / 20.0 * (1.0 + u2 / 42.0 * (1.0 + u2 / 72.0))));
 }
 
-// M_p of two directions (cosine, sine). Since the published exponents would cancel, the distance of
-// inclined_i from the mirrored inclined_o is used. I_0 is even, so a cosine may lose its sign.
+// Longitudinal lobe M_p for variance v. Inclinations are (cosine, sine). The form without
+// cancellation is that of `longitudinal` in python/mxeon/models/hair.py.
 float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
 {
     float c = abs(inclined_i.x);
@@ -43,8 +45,8 @@ float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
            / chiang_hair_norm(v);
 }
 
-// Unsigned angle between a vector and the x axis by a polynomial (tools/fits/arc_tangent.py), since
-// built-in arc tangents are off by 1e-6 or more.
+// Angle in [0, pi] between a vector and the x axis, by a polynomial (tools/fits/arc_tangent.py).
+// Built-in arc tangents are off by 1e-6 or more.
 float chiang_hair_angle(vec2 w)
 {
     vec2 a = abs(w);
@@ -58,7 +60,7 @@ float chiang_hair_angle(vec2 w)
     return w.x < 0.0 ? M_PI - angle : angle;
 }
 
-// N_p of the angle of a vector in the cross-section. The angle is in [0, pi].
+// Azimuthal lobe N_p with scale s. The angle of `exit` is that of the light from the lobe's center.
 float chiang_hair_around(vec2 exit, float s)
 {
     float scale = sqrt(M_PI / 8.0) * s;
@@ -67,7 +69,7 @@ float chiang_hair_around(vec2 exit, float s)
     return fall * (1.0 + rest) / (scale * (1.0 + fall) * (1.0 + fall) * (1.0 - rest));
 }
 
-// F: [MaterialX2026], Dielectric Fresnel Equations, rearranged to avoid cancellation.
+// Fresnel reflectance: [MaterialX2026], Dielectric Fresnel Equations, without cancellation.
 float chiang_hair_fresnel(float mu, float ior)
 {
     float gap = (ior - 1.0) * (ior + 1.0);
@@ -83,14 +85,14 @@ float chiang_hair_fresnel(float mu, float ior)
     return min(0.5 * amplitude * amplitude * (1.0 + ratio * ratio), 1.0);
 }
 
-// Product of complex numbers, which adds their angles.
+// Product of two complex numbers. Their angles are added.
 vec2 chiang_hair_product(vec2 a, vec2 b)
 {
     return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
 }
 
-// Cosine and sine of alpha in [-pi/2, pi/2], by series for alpha / 2 up to powers 10 and 9. Error:
-// 2e-9. Built-in functions may be off by 1.9e-4 (SwiftShader).
+// Cosine and sine of alpha in [-pi/2, pi/2], by series for alpha / 2. Error: 2e-9. SwiftShader's
+// built-in functions are off by 1.9e-4.
 vec2 chiang_hair_tilt(float alpha)
 {
     float x = 0.5 * alpha;
@@ -101,8 +103,9 @@ vec2 chiang_hair_tilt(float alpha)
     return chiang_hair_product(vec2(C, S), vec2(C, S));
 }
 
-// Terms that depend on the view. The columns of A are A_p of R, TT and TRT; A_rest is A_p of TRRT+.
-// Angles of the view and the refracted ray are (cosine, sine).
+// Terms that depend on the view, but not on the light. The columns of A are the attenuations A_p of
+// R, TT and TRT, and A_rest is that of TRRT+. In the cross-section, gamma_o and gamma_t are the
+// angles of the view and of the refracted ray, as (cosine, sine).
 struct ChiangHairSection
 {
     mat3 A;
@@ -129,13 +132,13 @@ ChiangHairSection chiang_hair_section(vec3 wo, float ior, vec3 absorption)
     return section;
 }
 
-// Sum of the lobes times pi. The columns of `tint` are for R, TT and TRT.
+// Sum of the lobes, which is pi times the response. The columns of `tint` are for R, TT and TRT.
 vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughness_TT, vec2 roughness_TRT, float ior,
                      float cuticle_angle, vec3 absorption)
 {
     ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
 
-    // The tilted inclination of the light, and the azimuth relative to the exit of R.
+    // Inclination of the light, tilted for the lobe R, and azimuth of the light from R's center.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));
@@ -143,7 +146,7 @@ vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughne
     vec2 tilted = chiang_hair_product(inclined_i, chiang_hair_product(alpha, alpha));
     vec2 exit = vec2(dot(wi.yz, wo.yz), wi.z * wo.y - wo.z * wi.y);
     exit = chiang_hair_product(exit, chiang_hair_product(section.gamma_o, section.gamma_o));
-    // Rotation by pi - 2 gamma_t.
+    // Rotation by pi - 2 gamma_t, from one lobe's center to the next.
     vec2 inside = -chiang_hair_product(section.gamma_t, section.gamma_t) * vec2(1.0, -1.0);
 
     // Add R, TT and TRT, and rotate the light after each lobe.
@@ -188,8 +191,8 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        // R and TRT use the irradiance on the viewer's side, TT that on the far side, and TRRT+ the
-        // mean. This is exact for an untilted cuticle in a uniform environment.
+        // R and TRT use irradiance from the viewer's side, TT from the far side, and TRRT+ the mean
+        // of both. This is exact for an untilted cuticle in a uniform environment.
         ChiangHairSection section = chiang_hair_section(wo, ior, absorption_coefficient);
         vec3 both = 0.5 * tint[2] * section.A_rest;
         vec3 front = tint[0] * section.A[0] + tint[2] * section.A[2] + both;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node conductor_bsdf, an opaque lobe that only reflects.
+// Node conductor_bsdf, a lobe that only reflects.
 
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
 
-// The least index. If index and extinction are 0, MaterialX's curve is 0 / 0 along the normal.
+// Least index. If index and extinction were 0, MaterialX's Fresnel curve would be 0 / 0 at normal
+// incidence.
 #define CONDUCTOR_LEAST_INDEX 1e-8
 
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,
@@ -20,7 +21,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         MicrofacetFresnel F;
         F.value = mx_fresnel_conductor(lobe.mu_h, ior, extinction);
         F.average = eonlib_fresnel_conductor_avg(ior, extinction);
-        F.visible = vec3(1.0);  // opaque
+        F.visible = vec3(1.0);  // unused: metal is opaque
 #ifdef EONLIB_PREFILTERED
         vec3 F0 = mx_fresnel_conductor(1.0, ior, extinction);
         F.visible = mx_ggx_dir_albedo(lobe.mu_o, lobe.alpha, F0, vec3(1.0))
@@ -29,7 +30,7 @@ void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinc
         microfacet_film(lobe, fd, F);
         microfacet_bsdf(closureData, lobe, fd, F, vec3(1.0), weight, distribution, bsdf);
     }
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // share that reaches the layer below
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));
 }
 
 // Overload without retroreflection, for MaterialX before 1.39.5.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node conical_edf: emission inside a cone around the normal.
+// Node conical_edf, which emits light in a cone around the normal.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-// Cosine of half an opening angle in degrees: 1 - 2 sin^2(angle / 4). The sine is a series up to
-// the 13th power, accurate to 7e-10 in [0, pi / 2]; built-in cosines may be off by 2e-4.
+// Cosine of half an opening angle in degrees, as 1 - 2 sin^2(angle / 4). The sine is a series with
+// an error of 7e-10 in [0, pi / 2], because built-in cosines may be off by 2e-4.
 float conical_edf_cosine(float angle)
 {
     float u = angle * (M_PI / 720.0);
@@ -20,12 +20,10 @@ void conical_edf(ClosureData closureData, vec3 color, vec3 N, float inner_angle,
     result = vec3(0.0);
     if (closureData.closureType == CLOSURE_TYPE_EMISSION)
     {
-        // Views from the back count as grazing.
         float mu = max(dot(N, closureData.V), 0.0);
         float inner = conical_edf_cosine(inner_angle);
         float outer = conical_edf_cosine(outer_angle);
-        // Rounded cosines of close angles may be equal or swapped. 1e-8 is below the spacing of
-        // floats.
+        // The lower limit avoids 0 / 0, because rounded cosines of close angles may be equal.
         if (outer_angle > inner_angle)
         {
             float t = clamp((mu - outer) / max(inner - outer, 1e-8), 0.0, 1.0);

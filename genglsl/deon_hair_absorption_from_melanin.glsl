@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node deon_hair_absorption_from_melanin.
+// Node deon_hair_absorption_from_melanin.
 
 #include "lib/hair_parameters.glsl"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node dielectric_bsdf, which reflects everything if ior is 0.
+// Node dielectric_bsdf. If ior is 0, the lobe reflects all light.
 
 #include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_dielectric.glsl"
@@ -27,7 +27,7 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     microfacet_film(lobe, fd, F);
     if (ior < 1.0 && scatter_mode != 0 && !fd.airy)
     {
-        // Light that is neither transmitted nor in F is reflected as by perfect mirrors.
+        // Light that is neither transmitted nor reflected by F is reflected as by perfect mirrors.
         float rest = max((1.0 - passing.y) / lobe.albedo - F.visible.x, 0.0);
         F.value += rest;
         F.visible += rest;

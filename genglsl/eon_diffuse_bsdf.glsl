@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node eon_diffuse_bsdf.
+// Node eon_diffuse_bsdf.
 
 #include "lib/oren_nayar_lobe.glsl"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node generalized_schlick_bsdf.
+// Node generalized_schlick_bsdf.
 
 #include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_schlick.glsl"
 
-// Average of the Fresnel curve over visible facets. If color82 is 1, dip is 0.
+// Average of the Fresnel curve over visible facets. `dip` is Hoffman's term, 0 if color82 is 1.
 vec3 generalized_schlick_visible(MicrofacetLobe lobe, FresnelData fd, vec3 dip)
 {
     float m = 1.0 - ggx_cosine_schlick(lobe.visible.x, lobe.visible.y, fd.exponent);
@@ -25,10 +25,10 @@ void generalized_schlick_bsdf(ClosureData closureData, float weight, vec3 color0
     MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
     FresnelData fd = mx_init_fresnel_schlick(max(color0, 0.0), max(color82, 0.0), max(color90, 0.0),
                                              exponent, thinfilm_thickness, thinfilm_ior);
-    fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));  // used by transmission
+    fd.ior = vec3(mx_f0_to_ior(dot(fd.F0, vec3(1.0 / 3.0))));  // for transmission
     vec3 dip = eonlib_fresnel_schlick_dip(fd.F0, fd.F82, fd.F90, exponent);
     MicrofacetFresnel F;
-    // With dark colors and a small color82, the published curve is negative.
+    // MaterialX's curve may be negative if the colors are dark and color82 is small.
     F.value = max(mx_fresnel_hoffman_schlick(lobe.mu_h, fd), 0.0);
     F.average = max(eonlib_fresnel_schlick_avg(fd.F0, fd.F90, exponent, dip), 0.0);
     F.visible = generalized_schlick_visible(lobe, fd, dip);

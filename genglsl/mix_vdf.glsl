@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node mix for media. To mix coefficients, powers of the transmittances are multiplied.
+// Node mix for two media. Coefficients are interpolated, so powers of transmittances are
+// multiplied.
 
 #include "lib/medium.glsl"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node multiply for a BSDF and a number. Light that is not scattered passes.
+// Node multiply for a BSDF and a number that scales response and albedo.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node multiply for a medium and a color, which scales the coefficients.
+// Node multiply for a medium and a color that scales the coefficients.
 
 #include "lib/medium.glsl"
 

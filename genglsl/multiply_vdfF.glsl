@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node multiply for a medium and a number, which scales the coefficients.
+// Node multiply for a medium and a number that scales the coefficients.
 
 #include "lib/medium.glsl"
 

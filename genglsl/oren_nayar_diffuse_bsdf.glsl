@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node oren_nayar_diffuse_bsdf.
+// Node oren_nayar_diffuse_bsdf.
 
 #include "lib/oren_nayar_lobe.glsl"
 

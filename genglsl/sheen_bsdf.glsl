@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node sheen_bsdf, and the lobes of both modes.
+// Node sheen_bsdf, with the modes 0 (Conty-Kulla) and 1 (Zeltner).
 //
-// Mode 0 clamps roughness to [1e-4, 1], the domain of the albedo's fit. A narrower lobe only
-// reflects at grazing.
+// Mode 0 clamps roughness to [1e-4, 1], the domain of the fit of the albedo.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_sheen.glsl"
 #include "lib/conty_kulla_albedo.glsl"
 #include "lib/half_vector.glsl"
 
-// Logarithm of the squared sine of the half vector's angle. If the cosine c is small, the result is
-// a series up to the eighth power of c. Relative error: 2e-9.
+// log(sin^2) of the angle between N and the half vector H. A small cosine uses a series up to its
+// eighth power. Relative error: 2e-9.
 float conty_kulla_log_sine(vec3 N, vec3 H)
 {
     float cosine = dot(N, H);
@@ -20,7 +19,7 @@ float conty_kulla_log_sine(vec3 N, vec3 H)
                      : log(max(dot(sine, sine), 1e-30));
 }
 
-// [MaterialX2026], Conty-Kulla Sheen Equations, for a color of 1.
+// BRDF of the Conty-Kulla sheen for color 1: [MaterialX2026], Conty-Kulla Sheen Equations.
 float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
 {
     float shape = 0.5 / roughness;
@@ -28,8 +27,8 @@ float conty_kulla_brdf(float mu_o, float mu_i, vec3 N, vec3 H, float roughness)
     return density / (4.0 * (mu_i + mu_o - mu_i * mu_o));
 }
 
-// [MaterialX2026], Zeltner Sheen Model, times the cosine, for an albedo of 1. The frame comes from
-// a cross product, since wo - mu_o N is only a rounding error if wo is along the normal.
+// Zeltner's sheen for albedo 1, times the cosine: [MaterialX2026], Zeltner Sheen Model. The frame
+// is built by a cross product, since wo - mu_o N is only a rounding error if wo is along N.
 float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 {
     vec3 Y = cross(N, wo);
@@ -49,7 +48,6 @@ float zeltner_lobe(vec3 wo, vec3 wi, vec3 N, float mu_o, float roughness)
 void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughness, vec3 N,
                 int mode, inout BSDF bsdf)
 {
-    // A weight of 0 or less turns the lobe off.
     if (weight <= 0.0)
     {
         return;
@@ -59,14 +57,14 @@ void sheen_bsdf(ClosureData closureData, float weight, vec3 color, float roughne
     vec3 wi = closureData.L;
     N = mx_forward_facing_normal(N, wo);
 
-    // If both cosines were 0, the BRDF would divide by 0.
+    // A positive mu_o avoids a division by 0 where both cosines would be 0.
     float mu_o = clamp(dot(N, wo), M_FLOAT_EPS, 1.0);
     float rough = clamp(roughness, mode == 0 ? 1e-4 : 0.01, 1.0);
     float albedo = mode == 0 ? conty_kulla_albedo_dir(mu_o, rough)
                              : mx_zeltner_sheen_dir_albedo(mu_o, rough);
 
-    // Light that the color removes is absorbed. Light that the base transmits also passes the
-    // sheen.
+    // The throughput has no color, since light that the color removes is absorbed. The throughput
+    // also applies to light that the base transmits.
     bsdf.throughput = vec3(max(1.0 - albedo * weight, 0.0));
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)

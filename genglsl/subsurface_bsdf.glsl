@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Entry point of the node subsurface_bsdf. The diffusion profile is applied on a sphere that has
-// the curvature of the surface.
+// Node subsurface_bsdf. The diffusion profile blurs the light on a sphere that has the curvature of
+// the surface.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
@@ -9,14 +9,13 @@
 void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 radius,
                      float anisotropy, vec3 N, inout BSDF bsdf)
 {
-    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // share that reaches the layer below
+    bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));
 
-    // The curvature is that of the geometry, not that of the node's normal, since R(r) depends on
-    // distances between points. The surface is flat if nothing changes between pixels. Derivatives
-    // are undefined in branches, so they are taken first.
+    // Curvature of the geometry, not of the node's normal, since diffusion depends on distances
+    // between points. If nothing changes between pixels, the surface is flat. Derivatives come
+    // first, since they are undefined in branches.
     float curvature = length(fwidth(closureData.N)) / max(length(fwidth(closureData.P)), 1e-30);
 
-    // A weight of 0 or less turns the lobe off.
     if (weight <= 0.0)
     {
         return;
@@ -26,7 +25,7 @@ void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 rad
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
         float mu_i = clamp(dot(N, closureData.L), -1.0, 1.0);
-        // The reduced mean free path, l / (1 - g), accounts for the anisotropy g.
+        // Anisotropy lengthens the mean free path by 1 / (1 - anisotropy).
         vec3 reach = curvature * max(radius, vec3(0.0)) / max(1.0 - anisotropy, 1e-3);
         vec3 light = subsurface_blur(mu_i, min(reach, vec3(1e3)));
         bsdf.response = color * light * closureData.occlusion * weight * M_PI_INV;

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact importance sampling of EON with two random numbers, no table and no iteration.
+// Exact importance sampling of EON with two random numbers.
 //
-// eon_sample draws wi, and eon_pdf is the density of wi in 1/sr. Directions and random numbers are
-// as in ltc_sampling. On the disk below the hemisphere, with wo at azimuth 0, EON is the sum of
-// four parts: docs/sampling.md. v is a random number in [0, 1); mu_o and S_o are cosine and sine of
-// wo.
+// eon_sample draws a direction wi, and eon_pdf is the density of wi in 1/sr. Arguments are as in
+// ltc_sampling. EON is the sum of the parts `flat`, `lower`, `upper` and `multiple`, which
+// docs/sampling.md defines for wo at azimuth 0. mu and S are the cosine and sine of a polar angle,
+// mu_o and S_o those of wo; q is roughness times S_o, and v is a random number in [0, 1).
 
 #include "ltc_sampling.glsl"
 
-// The least cosine of a sample.
+// Least cosine of a sample.
 #define EON_HORIZON (1.0 / 16777216.0)
 
-// Inverse distributions of two parts of EON. Source: tools/fits/eon_sampling.py. Domain: random
-// numbers and their roots in [0, 1]. Largest relative errors: 1.27e-5 and 5.7e-6 of the densities,
-// and 1.8e-7 of ROOT, the inverse of m = y Q(y).
+// Inverse distributions of the cosine in the parts `multiple` and `upper`. Source:
+// tools/fits/eon_sampling.py. Domain: random numbers and their roots in [0, 1]. Largest relative
+// errors: 1.27e-5 of the density by MULTIPLE, 5.7e-6 of the density by UPPER, 1.8e-7 of y by ROOT.
 #define EON_MULTIPLE0 -0.1221923217
 #define EON_MULTIPLE1 0.3674909842
 #define EON_MULTIPLE2 -0.5228247070
@@ -33,40 +33,39 @@
 #define EON_ROOT4 0.0001101024
 #define EON_ROOT5 -0.0008543250
 
-// eon_multiple_ratio of a gray rho.
+// Weight of multiple scattering for a gray rho, as by eon_multiple_ratio.
 float eon_gray_ratio(float rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);
     return weight * rho / (1.0 + EON_C1 * roughness - roughness * EON_LOSS_AVG * rho);
 }
 
-// (1 - S^3) / mu without a division by mu or cancellation.
+// (1 - S^3) / mu without cancellation and without a division by mu.
 float eon_cube_gap(float mu, float S)
 {
     return mu * (1.0 + S + S * S) / (1.0 + S);
 }
 
-// Direction on the side of wo with cosine mu and sine S. The sine of the azimuth is uniform.
+// Direction with cosine mu and sine S on the side of wo. The sine of its azimuth is uniform.
 vec3 eon_towards(float mu, float S, float u2)
 {
     return vec3(2.0 * S * sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu);
 }
 
-// Cosine below mu_o, drawn in proportion to S mu, for a uniform x = 1 - S^3.
+// Part `lower`: a cosine below mu_o, drawn in proportion to S mu. x = 1 - S^3 is uniform.
 float eon_lower_cosine(float x, float S)
 {
     return sqrt(x * (1.0 + S) / (1.0 + S + S * S));
 }
 
-// y(m) = (K / K(pi / 2))^(2 / 5), the inverse of m = y Q(y). K is the integral of sin^2 (1 - cos)
-// up to the angle whose cosine is 1 - m.
+// Part `upper`: y at m = 1 - mu, the inverse of m = y Q(y).
 float eon_upper_root(float m)
 {
     float high = EON_ROOT3 + m * (EON_ROOT4 + m * EON_ROOT5);
     return m * (EON_ROOT0 + m * (EON_ROOT1 + m * (EON_ROOT2 + m * high)));
 }
 
-// Q(y) of eon_upper_cosine, where Q(1) = 1.
+// Part `upper`: the polynomial Q(y). Q(1) is exactly 1.
 float eon_upper_quotient(float y)
 {
     float y2 = y * y;
@@ -75,14 +74,14 @@ float eon_upper_quotient(float y)
     return 1.0 + (1.0 - y) * (even + y * odd);
 }
 
-// Cosine above mu_o, drawn in proportion to S (1 - mu), for a uniform K. With y = v^(2 / 5) and
-// m(K) = y Q(y), 1 - mu = m(v K_o) (1 - mu_o) / m(K_o).
+// Part `upper`: a cosine above mu_o, drawn in proportion to S (1 - mu). y is v^(2 / 5), and y_o is
+// eon_upper_root(1 - mu_o). The quotient makes the distribution end exactly at mu_o.
 float eon_upper_cosine(float y, float mu_o, float y_o)
 {
     return 1.0 - (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y));
 }
 
-// Cosine drawn in proportion to H(mu) mu, as a function of t = v^(1 / 3).
+// Part `multiple`: a cosine drawn in proportion to mu fon_loss(mu). t is v^(1 / 3).
 float eon_multiple_cosine(float t)
 {
     float m = max(1.0 - t, 0.0);
@@ -92,8 +91,8 @@ float eon_multiple_cosine(float t)
     return t * (1.0 + m * (even + m * w * odd));
 }
 
-// Direction drawn in proportion to 1 + q x. The inverse distribution of x moves a uniform disk
-// point along a chord. z is sqrt(1 - x^2 - y^2) without cancellation.
+// Part `flat`: a direction whose projection onto the disk has a density in proportion to 1 + q x. A
+// uniform point is moved along a chord.
 vec3 eon_flat_draw(float v, float u2, float q)
 {
     vec3 wh = cosine_sample(v, u2);
@@ -103,9 +102,9 @@ vec3 eon_flat_draw(float v, float u2, float q)
     return vec3((q * (1.0 - wh.y * wh.y) + 2.0 * wh.x) / (1.0 + root), wh.y, z);
 }
 
-// Direction for wo at azimuth 0. u1 chooses one of four parts in proportion to their integrals, pi
-// for the flat part. The other parts share one costly pow, since GPU lanes that choose different
-// parts pay for all.
+// Direction for wo at azimuth 0. u1 chooses a part in proportion to its integral, which is 1 for
+// `flat`. The other parts share one call of pow, because GPU lanes would wait for each other's
+// calls.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
     float q = roughness * S_o;
@@ -129,8 +128,8 @@ vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughn
     return v < towards ? eon_towards(mu, S, u2) : eon_around(mu, S, u2);
 }
 
-// Direction drawn in proportion to the cosine times EON with a gray rho: docs/sampling.md. Samples
-// avoid the horizon, where the density is 0 and a weight is 0 / 0.
+// Direction drawn in proportion to EON with a gray rho times the cosine: docs/sampling.md. Samples
+// avoid the horizon, where the density is 0 and a weight would be 0 / 0.
 vec3 eon_sample(vec3 wo, float u1, float u2, float rho, float roughness)
 {
     vec3 turn = eon_azimuth_frame(wo);
@@ -139,8 +138,8 @@ vec3 eon_sample(vec3 wo, float u1, float u2, float rho, float roughness)
     return vec3(wi.x, wi.y, max(wi.z, EON_HORIZON));
 }
 
-// Cosine times EON with a gray rho, divided by the integral: [Portsmouth2025], Eqs. (16), (19),
-// (28).
+// Density of eon_sample: EON with a gray rho times the cosine, divided by the albedo.
+// [Portsmouth2025], Eqs. (16), (19), (28).
 float eon_pdf(vec3 wo, vec3 wi, float rho, float roughness)
 {
     float mu_o = min(wo.z, 1.0);

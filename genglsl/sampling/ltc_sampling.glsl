@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sampling of the hemisphere by uniform, cosine and (clipped) linearly transformed cosine lobes.
+// Sampling of the hemisphere: uniform, by the cosine, by a linearly transformed cosine (LTC), and
+// by a clipped LTC (CLTC).
 //
-// x_sample draws wi, and x_pdf is the density of wi in 1/sr. wo and wi are unit vectors that leave
-// the surface, in a local frame with the normal +z, and not below the horizon. u1 and u2 are
-// independent uniform random numbers in [0, 1). d is an entry of the lobe's matrix M, and `turn` is
-// the result of eon_azimuth_frame.
+// x_sample draws a direction wi, and x_pdf is the density of wi in 1/sr. Directions are as in
+// oren_nayar_family. u1 and u2 are independent uniform random numbers in [0, 1). d is an entry of
+// the LTC's matrix M, and `turn` is the result of eon_azimuth_frame.
 
 #include "oren_nayar_family.glsl"
 
-// The largest number below 1.
+// Largest float32 below 1.
 #define EON_BELOW_ONE (1.0 - 1.0 / 16777216.0)
 
-// Cosine and sine of the azimuth of wo, and sine of wo's polar angle. If this sine is below 1e-18,
-// squares underflow and the azimuth is 0.
+// Cosine and sine of the azimuth of wo, and sine of its polar angle. The azimuth is 0 if the square
+// of the latter sine underflows.
 vec3 eon_azimuth_frame(vec3 wo)
 {
     float S_o = min(sqrt(wo.x * wo.x + wo.y * wo.y), 1.0);
     return S_o > 1.0e-18 ? vec3(wo.x / S_o, wo.y / S_o, S_o) : vec3(1.0, 0.0, 0.0);
 }
 
-// wi rotated about the normal by the angle with the given cosine and sine.
+// Direction wi, rotated about the normal by an angle.
 vec3 eon_rotate_z(vec3 wi, float cosine, float sine)
 {
     return vec3(cosine * wi.x - sine * wi.y, sine * wi.x + cosine * wi.y, wi.z);
@@ -32,31 +32,32 @@ vec3 eon_around(float mu, float S, float u2)
     return vec3(S * cos(phi), S * sin(phi), mu);
 }
 
-// [Portsmouth2025], Listing 4.
+// Uniform direction: [Portsmouth2025], Listing 4.
 vec3 uniform_sample(float u1, float u2)
 {
     return eon_around(u1, sqrt((1.0 - u1) * (1.0 + u1)), u2);
 }
 
-// 1 / (2 pi).
+// Density of uniform_sample, 1 / (2 pi).
 float uniform_pdf(vec3 wi)
 {
     return 0.5 / EON_PI;
 }
 
-// [Portsmouth2025], Eq. (21).
+// Direction drawn in proportion to the cosine: [Portsmouth2025], Eq. (21).
 vec3 cosine_sample(float u1, float u2)
 {
     return eon_around(sqrt(1.0 - u1), sqrt(u1), u2);
 }
 
-// [Portsmouth2025], Eq. (21).
+// Density of cosine_sample, the cosine divided by pi.
 float cosine_pdf(vec3 wi)
 {
     return wi.z / EON_PI;
 }
 
-// Entries of M for mu and roughness in [0, 1]: [Portsmouth2025], Listing 2, which states no error.
+// Entries a, b, c and d of M for a cosine mu and roughness in [0, 1]: [Portsmouth2025], Listing 2,
+// which states no error.
 float ltc_ma(float mu, float roughness)
 {
     return 1.0 + roughness * (0.303392 + (-0.518982 + 0.111709 * mu) * mu
@@ -80,7 +81,7 @@ float ltc_md(float mu, float roughness)
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu);
 }
 
-// M wh, normalized and rotated to the azimuth of wo: [Portsmouth2025], Eqs. (22), (25).
+// Direction M wh, normalized and rotated to the azimuth of wo: [Portsmouth2025], Eqs. (22), (25).
 vec3 ltc_transformed(vec3 wo, vec3 wh, float roughness, float d)
 {
     float a = ltc_ma(wo.z, roughness);
@@ -91,8 +92,8 @@ vec3 ltc_transformed(vec3 wo, vec3 wh, float roughness, float d)
     return eon_rotate_z(wi, turn.x, turn.y);
 }
 
-// Density of wi, the transform of a wh from a clamped cosine: [Portsmouth2025], Eqs. (23), (24).
-// The unnormalized wh is the adjugate of M times wi. The length of wh enters the density.
+// Density of the LTC: [Portsmouth2025], Eqs. (23), (24). The length of wh = adj(M) wi enters the
+// density, so wh is not normalized.
 float ltc_density(vec3 wo, vec3 wi, float roughness, float d)
 {
     float a = ltc_ma(wo.z, roughness);
@@ -107,7 +108,7 @@ float ltc_density(vec3 wo, vec3 wi, float roughness, float d)
     return ratio * ratio * max(wh_z, 0.0) / EON_PI;
 }
 
-// The transformed cosine. Samples below the horizon are wasted.
+// Direction drawn from the LTC. Samples below the horizon are wasted.
 vec3 ltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     return ltc_transformed(wo, cosine_sample(u1, u2), roughness, ltc_md(wo.z, roughness));
@@ -118,14 +119,14 @@ float ltc_pdf(vec3 wo, vec3 wi, float roughness)
     return ltc_density(wo, wi, roughness, ltc_md(wo.z, roughness));
 }
 
-// Fraction of the clamped cosine with d x + z > 0: [Portsmouth2025], below Eq. (26).
+// Fraction of the LTC above the horizon, where d x + z > 0: [Portsmouth2025], below Eq. (26).
 float cltc_kept_fraction(float d)
 {
     return 0.5 + 0.5 / sqrt(1.0 + d * d);
 }
 
-// Direction from the clamped cosine with d x + z >= 0: [Portsmouth2025], Listing 3, but mirrored if
-// d > 0. On the rim, rounding may leave x^2 + y^2 > 1.
+// Direction drawn in proportion to the cosine where d x + z >= 0: [Portsmouth2025], Listing 3, but
+// mirrored if d > 0. Rounding may leave x^2 + y^2 > 1.
 vec3 cltc_clipped(float u1, float u2, float d)
 {
     vec3 wh = cosine_sample(u1, u2);
@@ -133,7 +134,7 @@ vec3 cltc_clipped(float u1, float u2, float d)
     return vec3(d > 0.0 ? x : -x, wh.y, sqrt(max(1.0 - (x * x + wh.y * wh.y), 0.0)));
 }
 
-// On the edge of the lune, rounding may make d x + z negative instead of 0.
+// Direction drawn from the CLTC. Rounding must not leave it below the horizon.
 vec3 cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     float d = ltc_md(wo.z, roughness);
@@ -141,22 +142,22 @@ vec3 cltc_sample(vec3 wo, float u1, float u2, float roughness)
     return vec3(wi.x, wi.y, max(wi.z, 0.0));
 }
 
-// [Portsmouth2025], Eq. (27).
+// Density of cltc_sample: [Portsmouth2025], Eq. (27).
 float cltc_pdf(vec3 wo, vec3 wi, float roughness)
 {
     float d = ltc_md(wo.z, roughness);
     return ltc_density(wo, wi, roughness, d) / cltc_kept_fraction(d);
 }
 
-// Probability P_u of the uniform lobe: [Portsmouth2025], Listing 4; mu and roughness in [0, 1].
+// Probability P_u of the uniform lobe for mu and roughness in [0, 1]: [Portsmouth2025], Listing 4.
 float eon_cltc_probability(float mu, float roughness)
 {
     float P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu;
     return pow(roughness, 0.1) * P_u;
 }
 
-// [Portsmouth2025], Listing 4, but with u1 < P_u instead of u1 <= P_u, so that a P_u of 0 never
-// divides.
+// Direction drawn from the mixture of CLTC and uniform: [Portsmouth2025], Listing 4, but with u1 <
+// P_u instead of u1 <= P_u, which avoids a division by P_u = 0.
 vec3 eon_cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     float P_u = eon_cltc_probability(wo.z, roughness);

@@ -1,77 +1,76 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every model of the Oren-Nayar family as plain functions, named as in the Python package.
+// Models of the Oren-Nayar family as plain functions, named as in the Python package.
 //
 // wo and wi are unit vectors that leave the surface, in a local frame with the normal +z, and not
 // below the horizon. BRDFs do not include the cosine. Albedos of QON and FON are for rho = 1.
 
 #include "../lib/eon.glsl"
 
-// [Portsmouth2025], Eq. (14), for mu in [0, 1]. Largest error of G_F / pi: 6.0e-4.
+// Coefficients of G_F / pi: [Portsmouth2025], Eq. (14), for mu in [0, 1]. Largest error: 6.0e-4.
 #define EON_G1 0.0571085289
 #define EON_G2 0.491881867
 #define EON_G3 -0.332181442
 #define EON_G4 0.0714429953
 
-// [Portsmouth2025], Eq. (9).
+// Average albedo of QON: [Portsmouth2025], Eq. (9).
 float qon_albedo_avg(float sigma)
 {
     return qon_aq(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * EON_PI)) * qon_bq(sigma);
 }
 
-// [Portsmouth2025], Eq. (12), as 1 - r H / (1 + c1 r).
+// Directional albedo of FON: [Portsmouth2025], Eq. (12), as 1 - r H / (1 + c1 r) with H = fon_loss.
 float fon_albedo_dir(float mu, float roughness)
 {
     return 1.0 - roughness * fon_loss(mu) * fon_af(roughness);
 }
 
-// [Portsmouth2025], Eq. (15).
+// Average albedo of FON: [Portsmouth2025], Eq. (15).
 float fon_albedo_avg(float roughness)
 {
     return (1.0 + EON_C2 * roughness) * fon_af(roughness);
 }
 
-// fon_loss with G_F of [Portsmouth2025], Eq. (14).
+// Approximate fon_loss, with G_F by [Portsmouth2025], Eq. (14).
 float fon_loss_approx(float mu)
 {
     float m = 1.0 - mu;
     return EON_C1 - m * (EON_G1 + m * (EON_G2 + m * (EON_G3 + m * EON_G4)));
 }
 
-// [Portsmouth2025], Eqs. (12), (14).
+// Approximate albedo of FON: [Portsmouth2025], Eqs. (12), (14).
 float fon_albedo_dir_approx(float mu, float roughness)
 {
     return 1.0 - roughness * fon_loss_approx(mu) * fon_af(roughness);
 }
 
-// [Portsmouth2025], Eq. (28) with the albedo of Eq. (14), in the form of eon_albedo_dir.
+// Approximate albedo of EON: [Portsmouth2025], Eq. (28) with the albedo of Eq. (14).
 vec3 eon_albedo_dir_approx(float mu, vec3 rho, float roughness)
 {
     vec3 D = eon_denominator(rho, roughness);
     return rho * (vec3(1.0) - roughness * fon_loss_approx(mu) * (vec3(1.0) - rho) / D);
 }
 
-// The average of eon_albedo_dir, which is linear in H.
+// Average of eon_albedo_dir, which is linear in fon_loss.
 vec3 eon_albedo_avg(vec3 rho, float roughness)
 {
     vec3 D = eon_denominator(rho, roughness);
     return rho * (vec3(1.0) - roughness * EON_LOSS_AVG * (vec3(1.0) - rho) / D);
 }
 
-// s of [Portsmouth2025], Eq. (3). N is +z, so the difference is not needed.
+// s = dot(wo, wi) - mu_o mu_i of [Portsmouth2025], Eq. (3), for the normal +z.
 float oren_nayar_s(vec3 wo, vec3 wi)
 {
     return wo.x * wi.x + wo.y * wi.y;
 }
 
-// rho / pi in every direction.
+// BRDF of Lambert's model.
 vec3 lambert_brdf(vec3 wo, vec3 wi, vec3 rho)
 {
     return rho / EON_PI;
 }
 
-// The angle with sine y and cosine x, divided by a right angle. A polynomial
-// (tools/fits/arc_tangent.py) computes a quarter of the angle. Built-in functions are less
-// accurate: the cosine of SwiftShader is off by 1.9e-4, the arc tangent of OSL by 1.2e-5.
+// Angle with sine y and cosine x, divided by pi / 2. A polynomial (tools/fits/arc_tangent.py) is
+// used, because SwiftShader's cosine is off by 1.9e-4 and OSL's arc tangent by 1.2e-5.
 float oren_nayar_angle(float y, float x)
 {
     float t_half = y / (1.0 + x);
@@ -81,9 +80,8 @@ float oren_nayar_angle(float y, float x)
     return 8.0 / EON_PI * t * series;
 }
 
-// (sin(alpha) - (2 beta / pi)^3) / cos(beta), or the limit 6 / pi if both directions are grazing.
-// The cube is 1 - q (3 - 3 q + q^2) with q = 1 - 2 beta / pi, and sin(alpha) is 1 - cos(alpha)^2 /
-// (1 + sin(alpha)), so the ones cancel exactly.
+// (sin(alpha) - (2 beta / pi)^3) / cos(beta), or 6 / pi if both directions are grazing. The code's
+// form without cancellation is derived in python/mxeon/models/diffuse.py.
 float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 {
     float high = max(mu_o, mu_i);
@@ -93,10 +91,11 @@ float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
     return high > 1.0e-37 ? rise / high : 6.0 / EON_PI;
 }
 
-// [OrenNayar1994], the functional approximation for Gaussian slopes, with interreflection:
+// BRDF of [OrenNayar1994], functional approximation for Gaussian slopes with interreflection. alpha
+// is the larger polar angle, beta the smaller (both divided by pi / 2 in the code), and phi the
+// azimuth.
 //   f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
 //       + 0.17 rho^2 / pi k (1 - (2 beta / pi)^2 cos(phi)),  k = sigma^2 / (sigma^2 + 0.13)
-// alpha is the larger polar angle and beta the smaller. The code divides both by a right angle.
 vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float mu_o = min(wo.z, 1.0);
@@ -117,13 +116,13 @@ vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return 1.0 / EON_PI * rho * (vec3(single_scatter + C3 * aside) + interreflection * rho);
 }
 
-// [Portsmouth2025], Eqs. (1), (3), (4).
+// BRDF of QON: [Portsmouth2025], Eqs. (1), (3), (4).
 vec3 qon_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     return qon_brdf_mu(min(wo.z, 1.0), min(wi.z, 1.0), oren_nayar_s(wo, wi), rho, sigma);
 }
 
-// QON with 0.57 instead of 0.33 in A_q: [OrenNayar1994] in footnote 1 of [Portsmouth2025].
+// BRDF of QON with 0.57 instead of 0.33 in A_q: [Portsmouth2025], footnote 1; [OrenNayar1994].
 vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = qon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
@@ -131,7 +130,7 @@ vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return 1.0 / EON_PI * (A + qon_bq(sigma) * quotient) * rho;
 }
 
-// The first formula proposed in [Fujii2013]: B_q of QON, s/t of FON, and an A that grows with rho.
+// BRDF of [Fujii2013], first formula: B_q of QON, s / t of FON, and an A that grows with rho.
 vec3 qon_fujii_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
@@ -139,21 +138,21 @@ vec3 qon_fujii_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return 1.0 / EON_PI * rho * (vec3(qon_aq(sigma) + qon_bq(sigma) * quotient) + tinted);
 }
 
-// [Portsmouth2025], Eq. (10).
+// BRDF of FON: [Portsmouth2025], Eq. (10).
 vec3 fon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
     return 1.0 / EON_PI * fon_af(roughness) * (1.0 + roughness * quotient) * rho;
 }
 
-// [Portsmouth2025], Eq. (16).
+// BRDF of EON: [Portsmouth2025], Eq. (16).
 vec3 eon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     return eon_brdf_mu(min(wo.z, 1.0), min(wi.z, 1.0), oren_nayar_s(wo, wi), rho, roughness);
 }
 
-// [Portsmouth2025], Eq. (16) with the albedo of Eq. (14). Below mu = 0.0014, the loss by the
-// quartic is negative and counts as 0, but the listing of the paper raises 1 - E to 1e-7.
+// BRDF of EON with the albedo of Eq. (14): [Portsmouth2025], Eq. (16). Below mu = 0.0014, the
+// approximate loss is negative and counts as 0, but the paper's listing raises 1 - E to 1e-7.
 vec3 eon_brdf_approx(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));

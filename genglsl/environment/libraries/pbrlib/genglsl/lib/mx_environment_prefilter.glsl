@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changed from MaterialX's file of this name, Copyright Contributors to the MaterialX Project. A
-// prefiltered environment with MaterialX's lookup and eonlib's albedo. This file replaces
-// MaterialX's file for clients that search `genglsl/environment` before MaterialX's data.
+// Prefiltered environment with MaterialX's lookup and eonlib's albedo. Changed from MaterialX's
+// file of this name, Copyright Contributors to the MaterialX Project. This file replaces
+// MaterialX's for clients that search `genglsl/environment` before MaterialX's data.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
 #define EONLIB_PREFILTERED
 
-// Mip level for a roughness alpha.
+// Mip level of the environment for a roughness alpha.
 float mx_latlong_alpha_to_lod(float alpha)
 {
     float lodBias = (alpha < 0.25) ? sqrt(alpha) : 0.5 * alpha + 0.375;
@@ -23,7 +23,7 @@ vec3 eonlib_prefiltered_light(vec3 N, vec3 V, vec2 alpha, FresnelData fd)
 }
 
 // Prefiltered light times the share that facets reflect or transmit. Every version of MaterialX has
-// this overload of the albedo.
+// this overload of mx_ggx_dir_albedo.
 vec3 mx_environment_radiance(vec3 N, vec3 V, vec3 X, vec2 alpha, int distribution, FresnelData fd)
 {
     N = mx_forward_facing_normal(N, V);
