@@ -5,8 +5,8 @@
     s = sqrt(r),  z = sqrt(mu / (mu + s)),
 
 where N and D are polynomials in z and s. At small roughness r, only light near the horizon remains.
-Then the exponential is sin(theta_h)^(1 / r) of the lowest half vector that light above the horizon
-allows, and the quotient s^2 / (mu + s)^3 behaves like E at mu = 0 and 1. The fit minimizes the
+In this limit, the exponential is sin(theta_h)^(1 / r) for the lowest half vector of light above the
+horizon, and the quotient s^2 / (mu + s)^3 behaves like E at mu = 0 and 1. The fit minimizes the
 largest absolute error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses sums, products,
 quotients and square roots. Since roughness is 4 / k with integer k, powers are products of roots.
 

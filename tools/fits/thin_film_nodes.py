@@ -27,7 +27,7 @@ SCALE = 1e3  # scales squared errors to about 1
 
 
 def random_films(count, ranges=fit.FILMS, seed=SEED):
-    """Each category with the materials, roughnesses and views of random films."""
+    """Random films by category, each with materials, roughnesses and views."""
     rng = np.random.default_rng(seed)
     for category in fit.MIRRORS:
         unit = rng.random((fit.NUMBERS, count))

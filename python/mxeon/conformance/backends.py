@@ -329,7 +329,7 @@ class Evaluating(Backend):
 
 
 class Media(Evaluating):
-    """A renderer of media, and of nodes whose only check is that an implementation exists."""
+    """A backend for media, and for nodes that are only checked to have an implementation."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 

@@ -205,7 +205,7 @@ class FunctionProbe:
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
-        """Values of all functions of the library, with right (False) and wrong (True) arguments."""
+        """Values of the library's functions, by whether the arguments are deliberately wrong."""
         return {False: self._values(1.0), True: self._values(0.95)}
 
     @cached_property

@@ -172,7 +172,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 
 def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs that are never passed: no argument of a call has the unique value of the input."""
+    """Inputs that a call never passes, because no argument has the unique value of the input."""
     expression = _lobe_expression(subject, target, library)
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
@@ -199,7 +199,7 @@ DRAWS = 256  # number of random materials
 ROUNDED = 1e-12  # 4500 float64 roundings, which is more than any text performs
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
-UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface; the node has another normal
+UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface, which differs from the node's normal
 # Weight and arguments of a closure, by the names of the node's inputs.
 Closure: TypeAlias = dict[str, ArrayLike]
 

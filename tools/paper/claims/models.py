@@ -83,7 +83,7 @@ def rms_to_full() -> Measured:
     most=0.1,
 )
 def kink() -> Measured:
-    """Jumps of df/ds at s = 0 and the largest roughness, for wo and wi at the same polar angle."""
+    """Jumps of df/ds at s = 0 for the largest roughness, if wo and wi have the same polar angle."""
     parts, ratios = [], []
     for degrees in (5, 25, 60):
         mu = np.cos(np.radians(degrees))

@@ -96,7 +96,7 @@ def own_diff(page: str) -> str:
 
 
 def needed(page: str) -> set[str]:
-    """A page, and all pages whose patches the patch of the page requires, recursively."""
+    """A page, and recursively all pages with patches that the page's patch requires."""
     found = {page}
     while more := {each for name in found for each in issues()[name].needs} - found:
         found |= more

@@ -536,7 +536,7 @@ def curves(films: microfacets.Films, case: Case) -> Compared:
 
 
 def film_limit(case: Case) -> list[Compared]:
-    """Values under films of IOR 1 or less, or of thickness THIN_LIMIT, compared with no film.
+    """Values under films of IOR 1 or less, or of thickness THIN_LIMIT, compared with bare lobes.
 
     A film with an IOR below 1 must equal a film with IOR 1, even if the film with IOR 1 is wrong.
     For a thin film, the equations themselves deviate, because the tabulated sensitivities of the

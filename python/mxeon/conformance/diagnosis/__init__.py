@@ -360,7 +360,7 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """Causes for outputs that must be 0: a constant nonzero value, a region, and the branches."""
+    """Causes of wrong outputs that must be 0: a constant value, a region, and the branches."""
     branches: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])

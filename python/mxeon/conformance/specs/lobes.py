@@ -230,7 +230,7 @@ class PbrSpec(ScatteringSpec):
 
 
 def uncolored(batch: Batch) -> Batch:
-    """The batch with all colors that only absorb light replaced by white."""
+    """The batch, in which white replaces all colors that only absorb light."""
     return batch.altered(**{each: samples.WHITE for each in ABSORBING if each in batch.inputs})
 
 

@@ -151,8 +151,8 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
         """Scale a metal's IOR n + ik so that roundings have a uniform effect; keep other outputs.
 
         n becomes n (1 - sqrt(r))^2, because n has the divisor 1 - sqrt(r). k becomes k^2 (1 - r) /
-        (n_max + 1)^2, because k^2 is a difference of terms as large as (n_max + 1)^2, divided by 1
-        - r.
+        (n_max + 1)^2, because k^2 has the divisor 1 - r and is a difference of terms as large as
+        (n_max + 1)^2.
         """
         if self.node != "artistic_ior":
             return compared
