@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scripts that make coefficients, figures and pages. They are not part of the package."""
+"""Scripts that make coefficients, figures and pages. The scripts are not part of the package."""

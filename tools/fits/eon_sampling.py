@@ -102,7 +102,7 @@ ROWS = (
 
 
 def printed(name, coefficients):
-    """Print coefficients with ten decimals, as the package has them, and return these numbers."""
+    """Print coefficients with ten decimals, as in the package, and return the rounded numbers."""
     rounded = [round(float(each), 10) for each in coefficients]
     print(f"{name} = ({', '.join(f'{c:.10f}' for c in rounded)})")
     return rounded

@@ -50,7 +50,7 @@ def missing(wo, roughness):
 
 
 def dielectric_average(ior):
-    """F_ss of a dielectric with an index of at least 1, by the shader's fit."""
+    """F_ss of a dielectric with an IOR of at least 1, by the shader's fit."""
     t = np.asarray(1.0 / ior)
     return 1.0 - t * fresnel_average.FORM.value((t,), AVERAGE)
 

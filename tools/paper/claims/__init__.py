@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Claims as measurements with limits, and the page "The paper, checked", which lists claims."""
+"""Claims, each a measurement with limits, and the page "The paper, checked" with all claims."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
