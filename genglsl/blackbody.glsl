@@ -45,8 +45,8 @@ float blackbody_Z(float t)
     return N / D;
 }
 
-// XYZ to linear Rec. 709 by IEC 61966-2-1. Negative blue (below 1900 K) and green (below 964 K) are
-// clamped to 0.
+// Converts XYZ to linear Rec. 709 by IEC 61966-2-1. Negative blue (below 1900 K) and green (below
+// 964 K) are clamped to 0.
 void blackbody_rec709(float temperature, out vec3 result)
 {
     float t = 1000.0 / clamp(temperature, 800.0, 25000.0);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node burley_diffuse_bsdf.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"

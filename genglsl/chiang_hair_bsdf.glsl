@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model.
+// Node chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model. The lobe p is A_p M_p N_p.
 //
 // Roughness is at least 1e-8 rad^2 along the fiber and 1e-4 rad around it, because float32 has no
 // narrower lobes. In the local frame, x is the fiber and z is the normal.
@@ -60,7 +60,7 @@ float chiang_hair_angle(vec2 w)
     return w.x < 0.0 ? M_PI - angle : angle;
 }
 
-// Azimuthal lobe N_p with scale s. The angle of `exit` is that of the light from the lobe's center.
+// Azimuthal lobe N_p with scale s. `exit` has the angle between the light and the lobe's center.
 float chiang_hair_around(vec2 exit, float s)
 {
     float scale = sqrt(M_PI / 8.0) * s;
@@ -104,8 +104,8 @@ vec2 chiang_hair_tilt(float alpha)
 }
 
 // Terms that depend on the view, but not on the light. The columns of A are the attenuations A_p of
-// R, TT and TRT, and A_rest is that of TRRT+. In the cross-section, gamma_o and gamma_t are the
-// angles of the view and of the refracted ray, as (cosine, sine).
+// R, TT and TRT, and A_rest is the attenuation of TRRT+. In the cross-section, gamma_o and gamma_t
+// are the angles of the view and of the refracted ray, as (cosine, sine).
 struct ChiangHairSection
 {
     mat3 A;
@@ -192,7 +192,7 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
         // R and TRT use irradiance from the viewer's side, TT from the far side, and TRRT+ the mean
-        // of both. This is exact for an untilted cuticle in a uniform environment.
+        // of both. The sum is exact for an untilted cuticle in a uniform environment.
         ChiangHairSection section = chiang_hair_section(wo, ior, absorption_coefficient);
         vec3 both = 0.5 * tint[2] * section.A_rest;
         vec3 front = tint[0] * section.A[0] + tint[2] * section.A[2] + both;

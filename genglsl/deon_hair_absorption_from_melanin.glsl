@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node deon_hair_absorption_from_melanin.
 
 #include "lib/hair_parameters.glsl"
 

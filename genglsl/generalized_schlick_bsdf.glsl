@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node generalized_schlick_bsdf.
 
 #include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_schlick.glsl"

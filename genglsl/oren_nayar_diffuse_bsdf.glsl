@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node oren_nayar_diffuse_bsdf.
 
 #include "lib/oren_nayar_lobe.glsl"
 

@@ -8,8 +8,8 @@
 #include "lib/conty_kulla_albedo.glsl"
 #include "lib/half_vector.glsl"
 
-// log(sin^2) of the angle between N and the half vector H. A small cosine uses a series up to its
-// eighth power. Relative error: 2e-9.
+// log(sin^2) of the angle between N and the half vector H. If the cosine is small, the code uses a
+// series up to the cosine's eighth power. Relative error: 2e-9.
 float conty_kulla_log_sine(vec3 N, vec3 H)
 {
     float cosine = dot(N, H);

@@ -4,7 +4,7 @@
 // eon_sample draws a direction wi, and eon_pdf is the density of wi in 1/sr. Arguments are as in
 // ltc_sampling. EON is the sum of the parts `flat`, `lower`, `upper` and `multiple`, which
 // docs/sampling.md defines for wo at azimuth 0. mu and S are the cosine and sine of a polar angle,
-// mu_o and S_o those of wo; q is roughness times S_o, and v is a random number in [0, 1).
+// and mu_o and S_o are those of wo. q is roughness times S_o, and v is a random number in [0, 1).
 
 #include "ltc_sampling.glsl"
 
@@ -40,7 +40,7 @@ float eon_gray_ratio(float rho, float roughness)
     return weight * rho / (1.0 + EON_C1 * roughness - roughness * EON_LOSS_AVG * rho);
 }
 
-// (1 - S^3) / mu without cancellation and without a division by mu.
+// (1 - S^3) / mu without cancellation or a division by mu.
 float eon_cube_gap(float mu, float S)
 {
     return mu * (1.0 + S + S * S) / (1.0 + S);
@@ -58,14 +58,14 @@ float eon_lower_cosine(float x, float S)
     return sqrt(x * (1.0 + S) / (1.0 + S + S * S));
 }
 
-// Part `upper`: y at m = 1 - mu, the inverse of m = y Q(y).
+// Part `upper`: the inverse y(m) of m = y Q(y), where m is 1 - mu.
 float eon_upper_root(float m)
 {
     float high = EON_ROOT3 + m * (EON_ROOT4 + m * EON_ROOT5);
     return m * (EON_ROOT0 + m * (EON_ROOT1 + m * (EON_ROOT2 + m * high)));
 }
 
-// Part `upper`: the polynomial Q(y). Q(1) is exactly 1.
+// Part `upper`: the polynomial Q(y), where Q(1) = 1.
 float eon_upper_quotient(float y)
 {
     float y2 = y * y;
@@ -92,7 +92,7 @@ float eon_multiple_cosine(float t)
 }
 
 // Part `flat`: a direction whose projection onto the disk has a density in proportion to 1 + q x. A
-// uniform point is moved along a chord.
+// uniform point of the disk is moved along a chord.
 vec3 eon_flat_draw(float v, float u2, float q)
 {
     vec3 wh = cosine_sample(v, u2);
@@ -103,8 +103,7 @@ vec3 eon_flat_draw(float v, float u2, float q)
 }
 
 // Direction for wo at azimuth 0. u1 chooses a part in proportion to its integral, which is 1 for
-// `flat`. The other parts share one call of pow, because GPU lanes would wait for each other's
-// calls.
+// `flat`. The other parts share one call of pow, which saves time on GPUs.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
     float q = roughness * S_o;

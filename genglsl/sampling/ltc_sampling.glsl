@@ -2,17 +2,17 @@
 // Sampling of the hemisphere: uniform, by the cosine, by a linearly transformed cosine (LTC), and
 // by a clipped LTC (CLTC).
 //
-// x_sample draws a direction wi, and x_pdf is the density of wi in 1/sr. Directions are as in
-// oren_nayar_family. u1 and u2 are independent uniform random numbers in [0, 1). d is an entry of
-// the LTC's matrix M, and `turn` is the result of eon_azimuth_frame.
+// For a lobe x, x_sample draws a direction wi, and x_pdf is the density of wi in 1/sr. Directions
+// are as in oren_nayar_family. u1 and u2 are independent uniform random numbers in [0, 1). d is an
+// entry of the LTC's matrix M, and `turn` is the result of eon_azimuth_frame.
 
 #include "oren_nayar_family.glsl"
 
 // Largest float32 below 1.
 #define EON_BELOW_ONE (1.0 - 1.0 / 16777216.0)
 
-// Cosine and sine of the azimuth of wo, and sine of its polar angle. The azimuth is 0 if the square
-// of the latter sine underflows.
+// Cosine and sine of the azimuth of wo, and sine of wo's polar angle. The azimuth is 0 if the
+// square of the latter sine underflows.
 vec3 eon_azimuth_frame(vec3 wo)
 {
     float S_o = min(sqrt(wo.x * wo.x + wo.y * wo.y), 1.0);
@@ -81,7 +81,8 @@ float ltc_md(float mu, float roughness)
     return roughness * d / (-1.0743 + (0.0725628 + mu) * mu);
 }
 
-// Direction M wh, normalized and rotated to the azimuth of wo: [Portsmouth2025], Eqs. (22), (25).
+// Direction M wh for a direction wh, normalized and rotated to the azimuth of wo: [Portsmouth2025],
+// Eqs. (22), (25).
 vec3 ltc_transformed(vec3 wo, vec3 wh, float roughness, float d)
 {
     float a = ltc_ma(wo.z, roughness);
@@ -119,14 +120,14 @@ float ltc_pdf(vec3 wo, vec3 wi, float roughness)
     return ltc_density(wo, wi, roughness, ltc_md(wo.z, roughness));
 }
 
-// Fraction of the LTC above the horizon, where d x + z > 0: [Portsmouth2025], below Eq. (26).
+// Fraction of the LTC above the horizon, where d wh.x + wh.z > 0: [Portsmouth2025], below Eq. (26).
 float cltc_kept_fraction(float d)
 {
     return 0.5 + 0.5 / sqrt(1.0 + d * d);
 }
 
-// Direction drawn in proportion to the cosine where d x + z >= 0: [Portsmouth2025], Listing 3, but
-// mirrored if d > 0. Rounding may leave x^2 + y^2 > 1.
+// Direction (x, y, z) drawn in proportion to the cosine where d x + z >= 0: [Portsmouth2025],
+// Listing 3, but mirrored if d > 0. Rounding may leave x^2 + y^2 > 1.
 vec3 cltc_clipped(float u1, float u2, float d)
 {
     vec3 wh = cosine_sample(u1, u2);
@@ -134,7 +135,7 @@ vec3 cltc_clipped(float u1, float u2, float d)
     return vec3(d > 0.0 ? x : -x, wh.y, sqrt(max(1.0 - (x * x + wh.y * wh.y), 0.0)));
 }
 
-// Direction drawn from the CLTC. Rounding must not leave it below the horizon.
+// Direction drawn from the CLTC. Rounding must not move the direction below the horizon.
 vec3 cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     float d = ltc_md(wo.z, roughness);

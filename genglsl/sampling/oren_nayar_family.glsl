@@ -18,7 +18,8 @@ float qon_albedo_avg(float sigma)
     return qon_aq(sigma) + (2.0 / 3.0 - 64.0 / (45.0 * EON_PI)) * qon_bq(sigma);
 }
 
-// Directional albedo of FON: [Portsmouth2025], Eq. (12), as 1 - r H / (1 + c1 r) with H = fon_loss.
+// Directional albedo of FON: [Portsmouth2025], Eq. (12), as 1 - r H / (1 + c1 r) with roughness r
+// and H = fon_loss.
 float fon_albedo_dir(float mu, float roughness)
 {
     return 1.0 - roughness * fon_loss(mu) * fon_af(roughness);
@@ -50,7 +51,7 @@ vec3 eon_albedo_dir_approx(float mu, vec3 rho, float roughness)
     return rho * (vec3(1.0) - roughness * fon_loss_approx(mu) * (vec3(1.0) - rho) / D);
 }
 
-// Average of eon_albedo_dir, which is linear in fon_loss.
+// Average albedo of EON. The directional albedo is linear in fon_loss.
 vec3 eon_albedo_avg(vec3 rho, float roughness)
 {
     vec3 D = eon_denominator(rho, roughness);
@@ -80,8 +81,9 @@ float oren_nayar_angle(float y, float x)
     return 8.0 / EON_PI * t * series;
 }
 
-// (sin(alpha) - (2 beta / pi)^3) / cos(beta), or 6 / pi if both directions are grazing. The code's
-// form without cancellation is derived in python/mxeon/models/diffuse.py.
+// Factor of oren_nayar_brdf: (sin(alpha) - (2 beta / pi)^3) / cos(beta), or 6 / pi if both
+// directions are grazing. The form without cancellation is derived in
+// python/mxeon/models/diffuse.py.
 float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 {
     float high = max(mu_o, mu_i);
@@ -92,8 +94,7 @@ float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 }
 
 // BRDF of [OrenNayar1994], functional approximation for Gaussian slopes with interreflection. alpha
-// is the larger polar angle, beta the smaller (both divided by pi / 2 in the code), and phi the
-// azimuth.
+// is the larger polar angle, and beta is the smaller. The code divides both by pi / 2.
 //   f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
 //       + 0.17 rho^2 / pi k (1 - (2 beta / pi)^2 cos(phi)),  k = sigma^2 / (sigma^2 + 0.13)
 vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
