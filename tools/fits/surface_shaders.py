@@ -4,10 +4,9 @@
     python -m tools.fits.surface_shaders
 
 The layer equation needs the albedo of each lobe. The reference computes albedos by quadrature, and
-eonlib computes albedos by fits. The script evaluates surfaces in both ways in float64, for pairs of
-directions and materials that are drawn as in the checks, but with other seeds. The script prints
-the largest errors of values, of albedos, and of means over a set. The errors are due to all fits
-together.
+eonlib uses fits. The script evaluates surfaces in both ways in float64, for pairs of directions and
+materials that are drawn as in the checks, but with other seeds. The script prints the largest
+errors of values, of albedos, and of means over a set. The errors are due to all fits together.
 """
 
 from contextlib import ExitStack, contextmanager, suppress

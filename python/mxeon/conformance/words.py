@@ -170,8 +170,7 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# Words between the names of the states that all wrong values share. A state is an option for lobes
-# or lights, such as "two lights".
+# Words between the names of states that all wrong values share. Lobes and lights have states.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 SUMS = "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
 # Other defects, and facts about defects. `_filled` replaces the braces by names and numbers.

@@ -76,8 +76,7 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average of a film's reflectance is worst for a bubble, which is a film around a medium
-# of IOR 1.
+# MaterialX's average of a film's reflectance is worst for a film around a medium of IOR 1.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
