@@ -191,8 +191,9 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        // R and TRT use irradiance from the viewer's side, TT from the far side, and TRRT+ the mean
-        // of both. The sum is exact for an untilted cuticle in a uniform environment.
+        // R and TRT use irradiance from the viewer's side, TT uses irradiance from the far side,
+        // and TRRT+ uses the mean. The sum is exact for an untilted cuticle in a uniform
+        // environment.
         ChiangHairSection section = chiang_hair_section(wo, ior, absorption_coefficient);
         vec3 both = 0.5 * tint[2] * section.A_rest;
         vec3 front = tint[0] * section.A[0] + tint[2] * section.A[2] + both;

@@ -5,7 +5,7 @@
 #include "lib/fresnel_conductor.glsl"
 
 // Least index of refraction. If index and extinction were 0, MaterialX's Fresnel curve would be 0 /
-// 0 at normal incidence.
+// 0 along the normal.
 #define CONDUCTOR_LEAST_INDEX 1e-8
 
 void conductor_bsdf(ClosureData closureData, float weight, vec3 ior, vec3 extinction,

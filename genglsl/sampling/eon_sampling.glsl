@@ -33,7 +33,7 @@
 #define EON_ROOT4 0.0001101024
 #define EON_ROOT5 -0.0008543250
 
-// Weight of multiple scattering for a gray rho, as by eon_multiple_ratio.
+// Weight of multiple scattering for a gray rho: eon_multiple_ratio.
 float eon_gray_ratio(float rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);
@@ -52,7 +52,7 @@ vec3 eon_towards(float mu, float S, float u2)
     return vec3(2.0 * S * sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu);
 }
 
-// Part `lower`: a cosine below mu_o, drawn in proportion to S mu. x = 1 - S^3 is uniform.
+// Part `lower`: a cosine below mu_o, drawn in proportion to S mu, for a uniform x = 1 - S^3.
 float eon_lower_cosine(float x, float S)
 {
     return sqrt(x * (1.0 + S) / (1.0 + S + S * S));

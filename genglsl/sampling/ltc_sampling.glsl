@@ -12,7 +12,7 @@
 #define EON_BELOW_ONE (1.0 - 1.0 / 16777216.0)
 
 // Cosine and sine of the azimuth of wo, and sine of wo's polar angle. The azimuth is 0 if the
-// square of the latter sine underflows.
+// latter sine's square underflows.
 vec3 eon_azimuth_frame(vec3 wo)
 {
     float S_o = min(sqrt(wo.x * wo.x + wo.y * wo.y), 1.0);
@@ -157,8 +157,8 @@ float eon_cltc_probability(float mu, float roughness)
     return pow(roughness, 0.1) * P_u;
 }
 
-// Direction drawn from the mixture of CLTC and uniform: [Portsmouth2025], Listing 4, but with u1 <
-// P_u instead of u1 <= P_u, which avoids a division by P_u = 0.
+// Direction drawn from the mixture of CLTC and uniform sampling: [Portsmouth2025], Listing 4, but
+// with u1 < P_u instead of u1 <= P_u, which avoids a division by P_u = 0.
 vec3 eon_cltc_sample(vec3 wo, float u1, float u2, float roughness)
 {
     float P_u = eon_cltc_probability(wo.z, roughness);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models of the Oren-Nayar family as plain functions, named as in the Python package.
+// Models of the Oren-Nayar family, named as in the Python package.
 //
 // wo and wi are unit vectors that leave the surface, in a local frame with the normal +z, and not
 // below the horizon. BRDFs do not include the cosine. Albedos of QON and FON are for rho = 1.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sum of an environment over visible facets. Changed from MaterialX's file of this name, Copyright
 // Contributors to the MaterialX Project. Unlike in MaterialX, masking depends on the direction, and
-// reflectances are never negative. This file replaces MaterialX's for clients that search
+// reflectances are never negative. This file replaces MaterialX's file for clients that search
 // `genglsl/environment` before MaterialX's data.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
@@ -29,7 +29,7 @@ vec3 mx_environment_radiance(vec3 N, vec3 V, vec3 X, vec2 alpha, int distributio
         vec3 wi = fd.refraction ? mx_refraction_solid_sphere(-wo, H, fd.ior.x) : -reflect(wo, H);
         vec3 L = mx_matrix_mul(frame, wi);
 
-        // Density of a reflected direction: G_1 D / (4 mu_o), where D is that of H.
+        // Density of a reflected direction: G_1 D / (4 mu_o), where D is mx_ggx_NDF.
         float pdf = mx_ggx_NDF(H, alpha) / (2.0 * (mu_o + length_o));
         float lod = mx_latlong_compute_lod(L, pdf, float($envRadianceMips - 1), count);
         vec3 F = max(mx_compute_fresnel(clamp(dot(wo, H), M_FLOAT_EPS, 1.0), fd), 0.0);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prefiltered environment with MaterialX's lookup and eonlib's albedo. Changed from MaterialX's
 // file of this name, Copyright Contributors to the MaterialX Project. This file replaces
-// MaterialX's for clients that search `genglsl/environment` before MaterialX's data.
+// MaterialX's file for clients that search `genglsl/environment` before MaterialX's data.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
 #define EONLIB_PREFILTERED
 
-// Mip level of the environment for a roughness alpha.
+// Mip level for a roughness alpha.
 float mx_latlong_alpha_to_lod(float alpha)
 {
     float lodBias = (alpha < 0.25) ? sqrt(alpha) : 0.5 * alpha + 0.375;
