@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional albedo of the Conty-Kulla sheen at full reflectance.
+// Directional albedo of the Conty-Kulla sheen with color 1.
 
-// min(E, 1) of [MaterialX2026], sheen_bsdf. E exceeds 1 at grazing if roughness is below 0.21.
-//   E = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,  s = sqrt(r), z = sqrt(mu / (mu + s))
-// Source: tools/fits/conty_kulla_albedo.py. Domain: mu and roughness in [1e-4, 1]. Largest absolute error: 1.5e-3.
+// Albedo of [MaterialX2026], sheen_bsdf, clamped to 1, since the model exceeds 1 at grazing for
+// roughness below 0.21. Source: tools/fits/conty_kulla_albedo.py. Domain: mu and roughness in
+// [1e-4, 1]. Largest absolute error: 1.5e-3.
 float conty_kulla_albedo_dir(float mu, float roughness)
 {
     float s = sqrt(roughness);

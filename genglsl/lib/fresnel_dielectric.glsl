@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fresnel reflectance F of a dielectric, the cosine-weighted average F_ss over the hemisphere, and
-// the average over visible facets of GGX. mu is dot(wo, N).
+// Fresnel reflectance F of a dielectric, and its averages over the hemisphere (F_ss,
+// cosine-weighted) and over the GGX facets visible from wo. mu is dot(wo, N).
 
-// [MaterialX2026], Dielectric Fresnel Equations. Amplitudes avoid 0 / 0 at ior 0.
+// Reflectance F: [MaterialX2026], Dielectric Fresnel Equations. Squared amplitudes avoid 0 / 0 at
+// ior 0.
 float eonlib_fresnel_dielectric(float mu, float ior)
 {
     float n2 = ior * ior;
@@ -13,8 +14,7 @@ float eonlib_fresnel_dielectric(float mu, float ior)
     return g2 <= 0.0 ? 1.0 : 0.5 * (s * s + p * p);
 }
 
-// F_ss of a dielectric. If n > 1, 1 - F_ss(n) = t N / D with t = 1 / n. If n < 1, 1 - F_ss(n) = n^2
-// (1 - F_ss(1 / n)). Source: tools/fits/fresnel_average.py. Largest absolute error: 5.3e-5.
+// Average F_ss. Source: tools/fits/fresnel_average.py. Largest absolute error: 5.3e-5.
 float eonlib_fresnel_dielectric_avg(float ior)
 {
     float t = ior > 1.0 ? 1.0 / ior : ior;
@@ -24,10 +24,9 @@ float eonlib_fresnel_dielectric_avg(float ior)
     return 1.0 - (ior > 1.0 ? lost : ior * ior * lost);
 }
 
-// The cosine mu + alpha^2 / (mu + alpha) N / D, at which F equals the average over visible facets.
-// The ior is clamped to the domain. Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in
-// [1e-4, 1], ior in [1.03, 3]. Largest absolute error of the albedo: 0.003, or 0.0017 for ior in
-// [1.05, 2.5].
+// Cosine at which F equals its average over visible facets. The ior is clamped to the domain.
+// Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], ior in [1.03, 3]. Largest
+// absolute error of the albedo: 0.003, or 0.0017 for ior in [1.05, 2.5].
 float ggx_cosine_dielectric(float mu, float alpha, float ior)
 {
     float n = clamp(ior, 1.03, 3.0);
@@ -47,8 +46,8 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// Shares of light that pass to the less dense side if ior < 1. x is the mean of 1 - F over visible
-// facets. y follows paths from that side in reverse and excludes light that facets reflect back.
+// Fractions of light that facets transmit into a less dense medium (ior < 1). x is the average of 1
+// - F over visible facets. y follows from reversed paths, without light that facets reflect back.
 // Source and derivation: tools/fits/ggx_inside.py. Domain: mu and alpha in [1e-4, 1], ior in [0.33,
 // 0.98]. Largest absolute errors: 2.8e-2 of the albedo with x, and 3.4e-2 of y.
 vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
@@ -70,8 +69,8 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 power = vec2(0.8025 - 0.3416 * muy, 0.52381 + 0.43633 * x);
     float risen = exp(1.80744 + 0.85484 * ior - 3.06595 * alpha - 3.09838 * x) * alpha * bent / mu;
 
-    // r is tau_m / tau_c of the derivation. At ior 0, r2 and the denominator of p would be 0. v^2
-    // would overflow above 1e19.
+    // r2 is the square of tau_m / tau_c in tools/fits/ggx_inside.py. r2 and the divisor of p would
+    // be 0 at ior 0. The square of v would overflow above 1e19.
     vec2 r2 = max((1.0 - bent) * (mu2 + a * alpha2) / (bent * (s2 + b * alpha2)), 1e-30);
     vec2 e2 = k2 / r2;
     vec2 v = clamp((r2 - 1.0) * sqrt(e2), -1e6, 1e6);
@@ -81,17 +80,17 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 Q = part * S;
     vec2 q = 4.0 * Q * (1.0 - Q);
     vec2 t = sqrt(1.0 + (4.0 * k2 - 1.0) * q) + 1.0 - 2.0 * Q;
-    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // divided by the cosine
+    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // as g above, but divided by mu
     vec2 s = 1.0 / (1.0 + g);
     vec2 p = ior / max(ior * ior + g, 1e-30);
-    // 1 - F may round above 1.
+    // Rounding may make 1 - F exceed 1.
     return min(pow(S, power) * 2.0 * g * (s * s + p * p), 1.0) / vec2(1.0, 1.0 + risen);
 }
 
-// Average over the visible facets if ior >= 1. Near ior 1, F only depends on the cosine divided by
-// sqrt(ior^2 - 1). So below ior 1.03, the fit for 1.03 is used at k mu and k alpha, both at most 1,
-// and the fitted cosine is divided by k, or multiplied by mu if k mu > 1. Largest absolute error of
-// the albedo below ior 1.03, where k alpha exceeds 1: 9.3e-3.
+// Average of F over visible facets if ior >= 1. Near ior 1, F depends only on the cosine divided by
+// sqrt(ior^2 - 1). So below ior 1.03, the fit for ior 1.03 is used at k mu and k alpha, clamped to
+// 1. The fitted cosine is divided by k, or multiplied by mu if k mu exceeds 1. Largest absolute
+// error of the albedo below ior 1.03, where k alpha exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages of Hoffman's generalized Schlick curve: F_ss, cosine-weighted over the hemisphere, and
-// the average over visible facets of GGX, which is the curve's value at a fitted cosine. mu is
-// dot(wo, N).
+// Averages of Hoffman's generalized Schlick curve over the hemisphere (F_ss, cosine-weighted) and
+// over the GGX facets visible from wo. mu is dot(wo, N).
 
-// F_ss of Hoffman's curve in closed form. The average of (1 - c)^q is 2 / ((q + 1) (q + 2)), that
-// of c (1 - c)^6 is 1 / 126.
+// F_ss in closed form. The average of (1 - c)^q is 2 / ((q + 1) (q + 2)), and the average of the
+// dip c (1 - c)^6 is 1 / 126.
 vec3 eonlib_fresnel_schlick_avg(vec3 color0, vec3 color90, float exponent, vec3 dip)
 {
     return mix(color0, color90, 2.0 / ((exponent + 1.0) * (exponent + 2.0))) - dip / 126.0;
 }
 
-// Factor a of c (1 - c)^6 in Hoffman's curve: [MaterialX2026], Generalized Schlick Equations.
+// Factor of the dip c (1 - c)^6 in Hoffman's curve: [MaterialX2026], Generalized Schlick Equations.
 vec3 eonlib_fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float exponent)
 {
     float m = 6.0 / 7.0;
@@ -18,10 +17,9 @@ vec3 eonlib_fresnel_schlick_dip(vec3 color0, vec3 color82, vec3 color90, float e
     return mix(color0, color90, pow(m, exponent)) * (1.0 - color82) * (7.0 / (m2 * m2 * m2));
 }
 
-// The cosine mu + alpha^2 / (mu + alpha) N / D, at which (1 - c)^exponent equals the average. The
-// exponent is clamped to the domain. Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in
-// [1e-4, 1], exponent 1 to 10. Largest absolute error of the albedo: 0.0032, or 0.0019 at exponent
-// 5.
+// Cosine at which (1 - c)^exponent equals its average over visible facets. The exponent is clamped
+// to the domain. Source: tools/fits/ggx_cosine.py. Domain: mu and alpha in [1e-4, 1], exponent 1 to
+// 10. Largest absolute error of the albedo: 0.0032, or 0.0019 at exponent 5.
 float ggx_cosine_schlick(float mu, float alpha, float exponent)
 {
     float x = mu / (mu + alpha);
@@ -41,8 +39,8 @@ float ggx_cosine_schlick(float mu, float alpha, float exponent)
 }
 
 // Average of Hoffman's dip c (1 - c)^6 over visible facets. Source: tools/fits/ggx_cosine.py.
-// Domain: mu and alpha in [1e-4, 1]. Largest absolute error of the albedo: 0.0059 for a dip from 1
-// to 0.
+// Domain: mu and alpha in [1e-4, 1]. Largest absolute error of the albedo: 0.0059 if the curve dips
+// from 1 to 0.
 float ggx_dip(float mu, float alpha)
 {
     float c = ggx_cosine_schlick(mu, alpha, 5.0);

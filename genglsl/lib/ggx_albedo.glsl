@@ -4,10 +4,9 @@
 // mu is the cosine between wo and the normal, and alpha is the roughness of GGX. Both lie in [1e-8,
 // 1].
 
-// 1 - E_ss of [MaterialX2026], Energy Compensation: the energy that perfectly reflecting facets
-// lose.
-//   1 - E_ss = z^2 N / D,  z = sqrt(mu / (mu + alpha))
-// Source: tools/fits/ggx_albedo.py. Domain: mu and alpha in [1e-4, 1]. Largest absolute error: 4.92e-4.
+// Energy 1 - E_ss that perfectly reflecting facets lose: [MaterialX2026], Energy Compensation.
+// Source: tools/fits/ggx_albedo.py. Domain: mu and alpha in [1e-4, 1]. Largest absolute error:
+// 4.92e-4.
 float ggx_missing(float mu, float alpha)
 {
     float z2 = mu / (mu + alpha);

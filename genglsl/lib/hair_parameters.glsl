@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Roughness and absorption of hair from artistic parameters.
 
-// Least roughness and color, since a lobe of width 0 would divide by 0.
+// Least roughness, since a lobe of width 0 would divide by 0, and least albedo.
 #define HAIR_LEAST 1e-3
 
-// The least value of 1 - concentration of melanin.
+// Least value of 1 - concentration of melanin, so that its logarithm is finite.
 #define HAIR_LEAST_SHARE 1e-4
 
 // Least color of a pigment, so that its logarithm is finite.
 #define HAIR_LEAST_COLOR 1e-30
 
-// [MaterialX2026], Hair Roughness Conversion Equations: the longitudinal variance v.
+// Longitudinal variance v: [MaterialX2026], Hair Roughness Conversion Equations.
 float hair_variance(float longitudinal)
 {
     float l = clamp(longitudinal, HAIR_LEAST, 1.0);
@@ -18,14 +18,14 @@ float hair_variance(float longitudinal)
     return root * root;
 }
 
-// [MaterialX2026], Hair Roughness Conversion Equations: the azimuthal logistic scale s.
+// Azimuthal logistic scale s: [MaterialX2026], Hair Roughness Conversion Equations.
 float hair_logistic(float azimuthal)
 {
     float a = clamp(azimuthal, HAIR_LEAST, 1.0);
     return a * (0.265 + 1.194 * a) + 5.372 * pow(a, 22.0);
 }
 
-// Absorption of a mix of melanins, whose amount is -log(1 - concentration): [dEon2011].
+// Absorption of two melanins, whose total amount is -log(1 - concentration): [dEon2011].
 vec3 hair_absorption_of_melanin(float concentration, float redness, vec3 eumelanin, vec3 pheomelanin)
 {
     float melanin = -log(max(1.0 - max(concentration, 0.0), HAIR_LEAST_SHARE));

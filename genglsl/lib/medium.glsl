@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The type of media is VDF since MaterialX 1.39.5, and BSDF before.
+// The GLSL type of media is VDF since MaterialX 1.39.5, and BSDF before.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 
-// MaterialX's GLSL has no version macro. This macro came with the type VDF.
+// MaterialX's GLSL has no version macro. AIRY_FRESNEL_ITERATIONS came with the type VDF.
 #ifdef AIRY_FRESNEL_ITERATIONS
 #define EONLIB_VDF VDF
 #else

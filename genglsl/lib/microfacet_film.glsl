@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reflectances of a microfacet lobe under a thin film: F_airy at the half vector, and the averages
-// of F_airy over the hemisphere (F_ss) and over visible facets. An average is a sum over three
-// nodes (cosines). Waves are damped over a node's width.
+// Reflectance F_airy of a microfacet lobe under a thin film: at the half vector, and averaged over
+// the hemisphere (F_ss) and over visible facets. An average is a sum over three cosines, called
+// nodes. Each node has a width, over which fringes partly cancel.
 
 #include "microfacet_lobe.glsl"
 #include "thin_film.glsl"
@@ -13,12 +13,12 @@
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
-// Gauss's rule for a semicircle over [-1, 1] has nodes x, 0 and -x with weights (1 - x^2) / 2. A
-// node is as wide as a third of the half width.
+// For visible facets, Gauss's rule for a semicircle over [-1, 1] has the nodes x, 0 and -x with
+// weights (1 - x^2) / 2. FILM_OUTER is x.
 #define FILM_OUTER 0.70710678
 
-// Cosine, width and two weights of a node. Nodes 0 to 2 are for visible facets, 3 to 5 are for
-// F_ss, and 6 is the half vector.
+// Cosine, width, and weights for visible facets and F_ss. Nodes 0 to 2 are for visible facets,
+// nodes 3 to 5 are for F_ss, and node 6 is the half vector.
 vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 {
     float x = FILM_OUTER * float(i - 1);
@@ -31,8 +31,8 @@ vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
     return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
-// Reflectances under a film. Unused ones are skipped: F.value in an environment, and F.visible of a
-// metal in direct light, since nothing lies below a metal.
+// Reflectances under a film. Unused reflectances are skipped: the value in an environment, and the
+// average over visible facets of opaque metal in direct light.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     F.outside = vec3(1.0);
@@ -41,9 +41,10 @@ void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresne
         float mu = lobe.visible.x;
         float alpha = lobe.visible.y;
         float y = alpha / (alpha + 0.2);
-        // Mean cosine, half width and bend of the nodes for visible facets. The source is that of
-        // F_ss. Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error: 7.7e-2, in total
-        // reflection by a film of index 1.16 on a metal of lower index. Outside the domain: 0.14.
+        // Mean cosine, half width and bend of the nodes for visible facets. Source:
+        // tools/fits/thin_film_nodes.py. Domain: mu in [0.1, 1], alpha in [0.01, 1]. Largest error:
+        // 7.7e-2, for total reflection between a film of index 1.16 and a metal of lower index.
+        // Outside the domain: 0.14.
         vec3 C = vec3(3.252, 0.32298, 0.14542)
             + y * (vec3(-0.91173, 3.3428, 0.030955) + y * (vec3(-4.1529, -4.255, -0.22576)
             + y * vec3(1.7917, 0.51298, -0.22374)))

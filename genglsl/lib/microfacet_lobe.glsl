@@ -6,13 +6,13 @@
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
-// Least index. A smaller index is lost next to 1 in float32, and MaterialX's curve is 0/0 along the
-// normal.
+// Least index of refraction. In float32, the square of a smaller index is lost next to 1, so that
+// MaterialX's curve is 0 / 0 along the normal.
 #define MICROFACET_LEAST_INDEX 1e-3
 
 #define MICROFACET_MIRROR_INDEX 1e8
 
-// The lobe for one view direction wo: [MaterialX2026], Microfacet Model.
+// A GGX lobe for one view direction wo: [MaterialX2026], Microfacet Model.
 struct MicrofacetLobe
 {
     vec3 wo;
@@ -29,9 +29,9 @@ struct MicrofacetLobe
     int closure;
 };
 
-// Fresnel reflectance: the value at the half vector, F_ss (the cosine-weighted average over the
-// hemisphere), and the average over visible facets, weighted by D G_2 / (4 mu_o). `outside`
-// multiplies MaterialX's environment.
+// Fresnel reflectances: `value` at the half vector, `average` (F_ss), cosine-weighted over the
+// hemisphere, and `visible`, over visible facets with the weight D G_2 / (4 mu_o). `outside` is a
+// factor of MaterialX's environment.
 struct MicrofacetFresnel
 {
     vec3 value;
@@ -40,27 +40,27 @@ struct MicrofacetFresnel
     vec3 outside;
 };
 
-// Whether a lobe is off: its weight is 0 or less, or it only transmits (scatter_mode 1) and
-// closureType does not.
+// Whether a lobe is off: its weight is at most 0, or it only transmits (scatter_mode 1) and
+// reflection is asked for.
 bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     bool transmission = closureData.closureType == CLOSURE_TYPE_TRANSMISSION;
     return weight <= 0.0 || (scatter_mode == 1 && !transmission);
 }
 
-// A direction in the frame of X and N.
+// Direction w in the frame of X, cross(N, X) and N.
 vec3 microfacet_local(MicrofacetLobe lobe, vec3 w)
 {
     return vec3(dot(w, lobe.X), dot(w, cross(lobe.N, lobe.X)), dot(w, lobe.N));
 }
 
-// |(alpha_x x, alpha_y y, z)|: [Heitz2014], Eq. (86).
+// Length |(alpha_x x, alpha_y y, z)| of the stretched direction w: [Heitz2014], Eq. (86).
 float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
 {
     return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
 }
 
-// Cosines and alphas are clamped, since they divide. Retroreflection mirrors wo about the normal.
+// Cosines and alphas are clamped because they are divisors. Retroreflection mirrors wo about N.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
 {
@@ -87,9 +87,8 @@ MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 rou
     return lobe;
 }
 
-// D G_2 / (4 mu_o): the BRDF of perfect mirrors times mu_i, or 0 below the horizon. G_2 = 2 mu_o
-// mu_i / (l_o mu_i + l_i mu_o): [MaterialX2026], Height-Correlated Smith Masking-Shadowing, July
-// 2026.
+// BRDF of perfect mirrors times mu_i: D G_2 / (4 mu_o), or 0 below the horizon. [MaterialX2026],
+// Height-Correlated Smith Masking-Shadowing, July 2026, defines G_2.
 float microfacet_lossless(MicrofacetLobe lobe)
 {
     float mu_i = clamp(dot(lobe.N, lobe.wi), 0.0, 1.0);
@@ -97,8 +96,8 @@ float microfacet_lossless(MicrofacetLobe lobe)
     return mx_ggx_NDF(microfacet_local(lobe, lobe.wh), lobe.roughness) * mu_i / (2.0 * smith);
 }
 
-// Light of an environment. MaterialX's sum masks by the mean alpha. Under a film, all facets are
-// perfect mirrors.
+// Light of an environment. MaterialX masks by the mean alpha. Under a film, facets are perfect
+// mirrors, and the caller multiplies by F.outside.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     fd.ior = fd.model == FRESNEL_MODEL_DIELECTRIC ? max(fd.ior, MICROFACET_LEAST_INDEX) : fd.ior;
@@ -113,8 +112,8 @@ vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData f
     return max(mx_environment_radiance(lobe.N, lobe.wo, lobe.X, lobe.roughness, distribution, fd), 0.0);
 }
 
-// Response and throughput, scaled by 1 + F_ss (1 - E_ss) / E_ss: [MaterialX2026], Energy
-// Compensation. Light that a tint removes is absorbed: [MaterialX2026a], Vertical-Layering
+// Response and throughput of a lobe, with the factor 1 + F_ss (1 - E_ss) / E_ss: [MaterialX2026],
+// Energy Compensation. Light that a tint removes is absorbed: [MaterialX2026a], Vertical-Layering
 // Transmittance.
 void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                      float weight, int distribution, inout BSDF bsdf)

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Transmission of microfacet surfaces, and lobes that may transmit.
+// Light through a microfacet surface, and the response and throughput of lobes that may transmit.
 
 #include "microfacet_film.glsl"
 
-// Light through a surface that transmits `share`. The view is refracted twice, as by a solid
-// sphere. If MaterialX renders transmission as opacity, the result is the tint.
+// Light through a surface that transmits the fraction `share`. MaterialX refracts the view twice,
+// as by a solid sphere. If MaterialX renders transmission as opacity, the result is the tint.
 //
-// MaterialX's squared exit cosine is 1 - n^2 (1 - q^2), where q is the cosine inside. If it rounds
-// below 0, the result is 0 / 0. So the view is lengthened by d, which adds 8 d q^2 / n^2: at
-// grazing 8e-6 n^2, three times the rounding error of seven operations. Near n = 1 and above 4, d
-// is too large, so n is clamped to [1.001, 4]. Smooth surfaces keep n above 4, but with a larger
-// cosine.
+// MaterialX's squared exit cosine is 1 - n^2 (1 - q^2), where q is the cosine inside. If rounding
+// makes it negative, 0 / 0 follows. Lengthening wo by d adds 8 d q^2 / n^2, at grazing 8e-6 n^2,
+// three times the rounding of seven operations. Near n = 1 and above 4, d is too large, so n is
+// clamped to [1.001, 4]. Smooth surfaces keep n above 4, with a larger cosine.
 //
-// A Schlick curve that is F0 except at grazing transmits `share` in both sums. A and B are
+// A Schlick curve that is F0 except at grazing makes MaterialX transmit `share`. A and B are
 // MaterialX's fits.
 //   sampled: (1 - F0) / G_1(mu)           prefiltered: 1 - (A F0 + B F90)
 vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData fd, vec3 share, vec3 tint)

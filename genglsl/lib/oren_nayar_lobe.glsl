@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Response of a rough diffuse lobe for two nodes. With energy_compensation, the model is EON,
-// otherwise qualitative Oren-Nayar. The models are in eon.glsl.
+// otherwise qualitative Oren-Nayar.
 //
-// Inputs are not clamped. Outside [0, 1] the same formulas apply, and results are finite for
-// roughness in [-1, 10] and colors up to 1. A negative weight counts as 0.
+// Inputs are not clamped. Results are finite for roughness in [-1, 10] and colors up to 1.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
@@ -14,7 +13,6 @@ void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float ro
 {
     bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));  // share that reaches the layer below
 
-    // A weight of 0 or less turns the lobe off.
     if (weight <= 0.0)
     {
         return;
@@ -24,7 +22,7 @@ void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float ro
     vec3 wi = closureData.L;
     N = mx_forward_facing_normal(N, wo);
 
-    // Cosines may round above 1, and the albedo takes a square root of 1 - mu^2.
+    // Rounding may make a cosine exceed 1, and the albedo takes a square root of 1 - mu^2.
     float mu_o = min(dot(N, wo), 1.0);
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)

@@ -7,29 +7,30 @@
 #define SUBSURFACE_GAUSS2 vec2(0.66120939, 0.36076157)
 #define SUBSURFACE_GAUSS3 vec2(0.23861919, 0.46791393)
 
-// Means of max(cos(theta), 0) over circles on the sphere, at distances `chord` from a point with
-// cosine mu.
+// Mean of max(cos(theta), 0), per color channel, over the circle on the sphere at the distance
+// `chord` from a point with cosine mu.
 vec3 subsurface_ring(float mu, vec3 chord)
 {
     vec3 squared = chord * chord;
     vec3 along = mu * (1.0 - 0.5 * squared);
     vec3 across = sqrt(max((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0));
 
-    // Where the terminator cuts a circle, the mean exceeds the cosine at its center.
+    // If the terminator cuts a circle, the mean exceeds the cosine at the circle's center.
     vec3 height = min(abs(along) / max(across, 1e-30), 1.0);
     vec3 more = across * (sqrt(1.0 - height * height) - height * acos(height));
     return max(along, 0.0) + more / 3.14159265358979;
 }
 
-// The blurred cosine. `reach` is the mean free path divided by the sphere's radius. In terms of t =
-// exp(-r / (3 reach)), the profile is (1 + t^2) dt.
+// `reach` is the mean free path divided by the radius. With t = exp(-r / (3 reach)) for the
+// distance r, the profile is (1 + t^2) dt.
 vec3 subsurface_blur(float mu, vec3 reach)
 {
     vec3 least = exp(-2.0 / (3.0 * max(reach, 1e-6)));  // t at r = 2, the diameter
     vec3 light = vec3(0.0);
     vec3 total = vec3(0.0);
 
-    // A plane needs one ring. The count depends on an input, so compilers do not unroll the loop.
+    // One ring is enough if `reach` is 0. The count depends on an input, so compilers do not unroll
+    // the loop.
     int rings = max(reach.x, max(reach.y, reach.z)) > 0.0 ? SUBSURFACE_RINGS : 1;
     for (int i = 0; i < rings; i++)
     {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// F_airy of vacuum (1), film (2) and substrate (3) in linear Rec. 709: [MaterialX2026], Thin-Film
-// Iridescence Model. Comments name the sections. Each channel has its substrate and sum over
-// CIE XYZ. Amplitudes are complex: if z = r_21 r_23, r_123^m cos(mu_k phi m + m (phi_21 + phi_23))
-// is the real part of z^m exp(i mu_k phi m).
+// Reflectance F_airy of a film (2) between vacuum (1) and a substrate (3) in linear Rec. 709:
+// [MaterialX2026], Thin-Film Iridescence Model, whose sections are named below. Each channel has
+// its own substrate and sum over CIE XYZ. z = r_21 r_23 is complex: see
+// python/mxeon/models/thin_film.py.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
-// Spectral Sensitivity of X, X, Y and Z: mu_k in 1/m, sigma_k^2 in 1/m^2 (the first is the
-// smallest), and v_k sqrt(2 pi sigma_k^2) / 1.0685e-7. Colors of X, Y and Z in Rec. 709, with white
-// E adapted by Bradford.
+// Section Spectral Sensitivity, Gaussians of X, X, Y and Z: mu_k in 1/m, sigma_k^2 in 1/m^2 (the
+// first is the smallest), and v_k sqrt(2 pi sigma_k^2) / 1.0685e-7. The colors in Rec. 709 are
+// adapted from white E by Bradford's method.
 #define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 #define THIN_FILM_HEIGHTS vec4(0.84659, 0.15386831, 1.0002219, 1.0011225)
@@ -18,16 +18,16 @@
 
 #define THIN_FILM_LEAST 1e-12  // least divisor, for roots of 0 and full reflection
 
-// The sum ends once the next square is at most VALUE times the squared mean reflectances or WIDTH
-// times the squared width. If each square is RATIO times the last, a mean of 1e-3 needs ln(VALUE
-// 1e-6) / ln(RATIO) = 86.1 orders, within COUNT. Source: tools/fits/thin_film.py. Largest relative
-// error of a film that reflects 1e-3 or more: 8e-4.
+// The sum over orders ends if a bound of the next squared term is at most VALUE times the squared
+// mean reflectances or WIDTH times the squared width. The bound decreases by RATIO or faster, so a
+// mean of 1e-3 needs ln(VALUE 1e-6) / ln(RATIO) = 86.1 orders, at most COUNT. Source:
+// tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
 #define THIN_FILM_ORDER_RATIO 0.6
 #define THIN_FILM_ORDER_COUNT 87
 
-// A complex number for each channel.
+// A complex number per color channel.
 struct ThinFilmComplex
 {
     vec3 re;
@@ -42,7 +42,7 @@ ThinFilmComplex thin_film_product(ThinFilmComplex a, ThinFilmComplex b)
     return z;
 }
 
-// (a - b) / (a + b)
+// Amplitude (a - b) / (a + b) of an interface.
 ThinFilmComplex thin_film_interface(ThinFilmComplex a, ThinFilmComplex b)
 {
     ThinFilmComplex z;
@@ -54,15 +54,14 @@ ThinFilmComplex thin_film_interface(ThinFilmComplex a, ThinFilmComplex b)
     return z;
 }
 
-// Second Interface: r_23 of both polarizations below a film of index n, in which the cosine is
-// mu_t.
+// Section Second Interface: r_23 of both polarizations. In the film of index n, the cosine is mu_t.
 void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out ThinFilmComplex r23_s,
                          out ThinFilmComplex r23_p)
 {
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
-        // The phase is pi below a denser film; 1e-6 tolerates rounding of F0. Negative curves count
-        // as 0.
+        // The sign depends on whether the film is denser. The factor 1 - 1e-6 tolerates rounding of
+        // F0. A negative curve counts as 0.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
         r23_p.re = r * (2.0 * step(vec3(F0), fd.F0) - 1.0);
@@ -72,8 +71,8 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
     }
     else
     {
-        // Second Interface Phase: the root U + i V of (eta_3 + i kappa_3)^2 - sin^2(theta). The
-        // smaller part is a quotient, since a difference would cancel.
+        // Section Second Interface Phase: the root U + i V of (eta_3 + i kappa_3)^2 - sin^2(theta).
+        // The smaller of U and V is a quotient, since a difference would cancel.
         vec3 n2 = fd.ior * fd.ior - fd.extinction * fd.extinction;
         vec3 Q = fd.ior * fd.extinction;
         vec3 A = n2 - sin2;
@@ -94,8 +93,8 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
     }
 }
 
-// Airy Summation, DC term: C_0 = R_dc - T_12 as a product without cancellation. R_12 + R_dc = 1 +
-// C_0.
+// Section Airy Summation, DC term R_12 + R_dc = 1 + C_0. C_0 = R_dc - T_12 is a product here, which
+// does not cancel.
 vec3 thin_film_c0(float r21, ThinFilmComplex r23)
 {
     float R12 = r21 * r21;
@@ -103,16 +102,16 @@ vec3 thin_film_c0(float r21, ThinFilmComplex r23)
     return (R12 - 1.0) * (1.0 - R23) / max(1.0 - R12 * R23, THIN_FILM_LEAST);
 }
 
-// Color Conversion of the responses of X, X, Y and Z.
+// Section Color Conversion.
 vec3 thin_film_rec709(vec4 S)
 {
     return (S.x + S.y) * THIN_FILM_COLOR_X + S.z * THIN_FILM_COLOR_Y + S.w * THIN_FILM_COLOR_Z;
 }
 
-// Airy Summation, higher-order terms: the sum of C_m S_m / 2 over m and both polarizations, with
-// C_m = C_0 z^m, S_m / 2 = fade^(m^2) exp(i mu_k phi m) and fade = exp(-sigma_k^2 phi^2). If z is
-// real, no sine is needed: S_(m + 1) + fade^(4 m) S_(m - 1) = fade^(2 m) Re(S_1) S_m. `spread`, the
-// change of phi in a node, damps fast waves by an arbitrary fourth power.
+// Section Airy Summation, higher-order terms: the sum of C_m S_m / 2 over m and both polarizations,
+// with C_m = C_0 z^m and S_m / 2 = fade^(m^2) exp(i mu_k phi m). A real z needs no sine: S_(m + 1)
+// + fade^(4 m) S_(m - 1) = fade^(2 m) Re(S_1) S_m. `spread` is the change of phi in a node. A
+// factor with spread^4, an arbitrary power, damps fast waves.
 vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex z_p, float phi, float spread,
                       float limit, bool is_real)
 {
@@ -127,8 +126,8 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     vec4 S_re = THIN_FILM_HEIGHTS * cosine;  // S_m / 2 times the heights
     vec4 S_im = THIN_FILM_HEIGHTS * sine;
 
-    // Squares of the first order and of the ratio of orders. s reflects more at both interfaces, p
-    // transmits more.
+    // Bounds of the squared first term and of the squared ratio of terms. Polarization s reflects
+    // more at both interfaces, p transmits more.
     vec3 R = z_s.re * z_s.re + z_s.im * z_s.im;
     vec3 first = C0_p * C0_p * R;
     float order2 = max(first.x, max(first.y, first.z)) * fade2.x;
@@ -171,14 +170,14 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     return sum;
 }
 
-// F_airy at cosine mu, or its mean over a width of cosines. An index below 1 means no film.
+// F_airy at cosine mu, or its mean over a width of cosines. A film index below 1 counts as 1.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
-    // Three-Layer Geometry: g = n mu_t. g^2 keeps all digits of a grazing mu.
+    // Section Three-Layer Geometry: g = n mu_t. This form of g^2 keeps all digits of a small mu.
     float n = max(fd.tf_ior, 1.0);
     float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 
-    // First Interface. Without a film, the coefficients are 0.
+    // Section First Interface. Without a film, the amplitudes r_21 are 0.
     float r21_s = (g - mu) / max(g + mu, THIN_FILM_LEAST);
     float r21_p = (g - n * n * mu) / max(g + n * n * mu, THIN_FILM_LEAST);
 
@@ -191,7 +190,8 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     z_p.re *= r21_p;
     z_p.im *= r21_p;
 
-    // Optical Path Difference: phi = 2 pi Delta = 4 pi d g, with derivative 4 pi d mu / g by mu.
+    // Section Optical Path Difference: phi = 2 pi Delta = 4 pi d g. Its derivative by mu is 4 pi d
+    // mu / g.
     float scale = 4.0e-9 * M_PI * fd.tf_thickness;
     float phi = scale * g;
     float spread = scale * width * mu / max(g, THIN_FILM_LEAST);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Combined closures for path tracers. Values are summed; a draw chooses one of two lobes.
+// Closures that combine two closures, for path tracers. A draw chooses one of the two.
 
 #include "lib/questions.glsl"
 #include "../layer_bsdf.glsl"
@@ -9,7 +9,7 @@
 #include "libraries/pbrlib/genglsl/mx_mix_bsdf.glsl"
 #include "libraries/pbrlib/genglsl/mx_layer_vdf.glsl"
 
-// Response of two scaled closures.
+// Draws or densities of closures a and b, scaled by factor_a and factor_b.
 void path_combine(vec3 a, vec3 factor_a, vec3 b, vec3 factor_b, inout BSDF result)
 {
     if (path_asked != PATH_VALUE)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diffuse lobes for path tracers. EON has a sampler, other lobes sample a cosine.
+// Diffuse lobes for path tracers. Lobes other than EON are drawn in proportion to the cosine.
 
 #include "lib/questions.glsl"
 #include "../oren_nayar_diffuse_bsdf.glsl"
@@ -9,7 +9,7 @@
 #include "../translucent_bsdf.glsl"
 #include "../sampling/eon_sampling.glsl"
 
-// Draws directions in proportion to EON with the mean color.
+// Draws directions in proportion to EON with the mean of the three color channels.
 void path_eon(vec3 color, float roughness, vec3 N, inout BSDF bsdf)
 {
     if (path_asked != PATH_VALUE)

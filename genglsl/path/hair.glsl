@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hair for path tracers. M_p is drawn as in [dEon2013], and N_p, a logistic cut at +-pi, by its
-// inverse distribution. The cuticle tilts the light, so draws are tilted back, even past the end of
-// the fiber.
+// Hair for path tracers. The longitudinal distribution M_p of lobe p is drawn as in [dEon2013]. The
+// azimuthal distribution N_p, a logistic cut at +-pi, is drawn by inversion. Both describe light
+// that the cuticle has tilted, so draws are tilted back.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"
 
-// The lobes for one view: mean weights, roughness and, as complex numbers, the tilt of the light by
-// the cuticle and the azimuth of the exit. The last lobe, TRRT+, is uniform in azimuth.
+// The lobes R, TT, TRT and TRRT+ for one view. `weight` is the mean over colors. `tilt` (of light
+// by the cuticle) and `exit` (azimuth of the exit) are angles as unit complex numbers. TRRT+ is
+// uniform in azimuth.
 struct PathHair
 {
     vec4 weight;
@@ -16,7 +17,7 @@ struct PathHair
     vec2 exit[4];
 };
 
-// An azimuth is the angle of z + i y.
+// The azimuth of a direction (x, y, z) is the angle of z + i y.
 PathHair path_hair(vec3 wo, vec3 tint_R, vec3 tint_TT, vec3 tint_TRT, float ior, vec2 roughness_R, vec2 roughness_TT,
                    vec2 roughness_TRT, float cuticle_angle, vec3 absorption)
 {
@@ -51,9 +52,9 @@ vec2 path_hair_untilted(vec2 tilted, vec2 tilt)
     return chiang_hair_product(tilted, tilt * vec2(1.0, -1.0));
 }
 
-// Density of wi over all lobes. The model folds tilted directions at the end of the fiber, so two
-// directions of light may share a tilted direction. A draw chooses one in proportion to the
-// cosines. If no direction exists, the draw passes the end of the fiber to the opposite azimuth.
+// Density of wi in 1/sr. The model mirrors directions that are tilted past the end of the fiber, so
+// two directions of light may have the same tilted direction. A draw chooses one of the two by the
+// cosines. If neither exists, the draw passes the end of the fiber.
 float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
 {
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
@@ -75,8 +76,8 @@ float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
     return sum / dot(hair.weight, vec4(1.0));
 }
 
-// The third random number draws the lobe. High bits of the others draw the inclination, low bits
-// the azimuth.
+// Draws a direction of light. path_u.z selects the lobe. The first 12 bits of path_u.xy select the
+// inclination, and the next 12 bits select the azimuth.
 vec3 path_hair_draw(PathHair hair, vec3 wo)
 {
     float left = path_u.z * dot(hair.weight, vec4(1.0));
@@ -98,7 +99,7 @@ vec3 path_hair_draw(PathHair hair, vec3 wo)
     vec2 tilted = vec2(sqrt((1.0 - S) * (1.0 + S)), S);
     vec2 inclined = path_hair_untilted(tilted, hair.tilt[p]);
     vec2 folded = path_hair_untilted(tilted * vec2(-1.0, 1.0), hair.tilt[p]);
-    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if neither exists
+    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if neither direction exists
     bool folding = path_u.z < folds;
     inclined = folding ? folded : inclined;
     path_u.z = folding ? path_u.z / folds : (path_u.z - folds) / (1.0 - folds);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A point of a surface, and the state of one query of its material.
+// A surface point, and the global variables of one query of a material.
 
 struct Point
 {
@@ -21,16 +21,16 @@ vec3 path_wi;
 vec3 path_u;
 bool path_inside;
 bool path_thin;
-float path_eta; // index below the lobe divided by index above
-vec3 path_facet; // normal of the facet, drawn or derived from wo and wi
-vec3 path_inner; // denser side: share that a dielectric passes, E_ss, mean F of visible facets
-float path_reversed; // G_1 outside / G_1 inside, or 0 if the facet passes no light
-vec3 path_root; // response of the last closure, the root of the material
+float path_eta; // index of refraction below the lobe / index above
+vec3 path_facet; // normal of the facet: drawn, or computed from wo and wi
+vec3 path_inner; // wo in the denser medium: transmitted fraction, E_ss, mean F of visible facets
+float path_reversed; // G_1 of wi outside / G_1 of wo inside, or 0 if the facet transmits no light
+vec3 path_root; // response of the closure called last
 
 #define u_numActiveLightSources 1
 #define u_refractionTwoSided false
 
-// Octahedral map of unit vectors to |x| + |y| + |z| = 1. The lower half is folded outwards.
+// Octahedral map of unit vectors to the square [-1, 1]^2. path_unpacked is its inverse.
 vec2 path_fold(vec2 w)
 {
     return vec2(w.x < 0.0 ? abs(w.y) - 1.0 : 1.0 - abs(w.y), w.y < 0.0 ? abs(w.x) - 1.0 : 1.0 - abs(w.x));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions for path tracers (docs/path_tracing.md). Directions are unit vectors that leave the
-// point.
+// Functions that a path tracer calls (docs/path_tracing.md). wo and wi are unit vectors that point
+// away from the surface.
 
 void path_ask(int asked, Point p, vec3 wo, vec3 wi, vec3 u)
 {
@@ -16,23 +16,23 @@ void path_ask(int asked, Point p, vec3 wo, vec3 wi, vec3 u)
     path_material();
 }
 
-// f cos(theta_i) times the opacity.
+// Value of the BSDF f times cos(theta_i) and the opacity.
 vec3 material_evaluate(Point p, vec3 wo, vec3 wi)
 {
     path_ask(PATH_VALUE, p, wo, wi, vec3(0.0));
     return path_root * path_out.a;
 }
 
-// Density in 1/sr of the draws of material_sample. The integral is the share of draws that are not
-// lost.
+// Density in 1/sr with which material_sample draws wi. The integral is the probability of a draw
+// with a positive pdf.
 float material_pdf(Point p, vec3 wo, vec3 wi)
 {
     path_ask(PATH_PDF, p, wo, wi, vec3(0.0));
     return path_root.x > 0.0 ? path_root.y * path_out.a : 0.0;
 }
 
-// Draws wi by three random numbers in [0, 1). `weight` is f cos(theta_i) / pdf. Returns false if
-// the path ends. If light passes straight through, wi is -wo and pdf is 0, since no other call
+// Draws wi with random numbers u in [0, 1). `weight` is f cos(theta_i) / pdf. The result is false
+// if the path ends. If light passes straight through, wi is -wo and pdf is 0, since no other call
 // finds -wo.
 bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out float pdf)
 {
@@ -40,7 +40,7 @@ bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out
     weight = vec3(1.0);
     pdf = 0.0;
 
-    // A loop makes compilers inline the material only once.
+    // Because the queries share a loop, compilers inline the material only once.
     for (int asked = PATH_DRAW; asked >= PATH_VALUE; --asked)
     {
         path_ask(asked, p, wo, wi, u);
@@ -65,7 +65,7 @@ bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out
     return pdf > 0.0;
 }
 
-// Opacity for shadow rays: the share of light that does not pass straight through the surface.
+// Opacity for shadow rays: the fraction of light that does not pass straight on.
 float material_shadow(Point p, vec3 wo)
 {
     path_ask(PATH_NOTHING, p, wo, wo, vec3(0.0));

@@ -1,37 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// Microfacet lobes for path tracers, drawn by visible normals. Macros replace three functions of
-// microfacet_lobe.glsl that eonlib's nodes call.
+// Microfacet lobes for path tracers: docs/path_tracing.md. The nodes' code is included again.
+// Macros replace three functions of microfacet_lobe.glsl.
 //
-// A facet is drawn first. It reflects or refracts in proportion to the returned light, so no draw
-// weighs much more than the lobe's albedo. Light that is not reflected is transmitted. All visible
-// facets refract the same share, as in MaterialX's environment.
+// If wo lies in the denser medium, a facet may be lost: it neither reflects wo into that medium nor
+// refracts wo out of it. A draw replaces a lost facet by its partner, the facet at the mirrored
+// height on the spherical cap of visible normals [Dupuy2023]. Mirroring preserves areas, so a facet
+// whose partner is lost is drawn twice as often.
 //
-// Inside a solid, a facet loses its light if it neither reflects into the solid nor refracts out.
-// Such a facet is replaced by its partner: its image if the spherical cap of visible normals
-// [Dupuy2023] is turned upside down. This map keeps areas and is its own inverse, so a facet whose
-// partner loses light is drawn exactly twice as often.
-//
-// Light into a thinner medium takes paths out of that medium in reverse. If P is the share that
-// passes from outside and p the density of refracted directions, n^2 mu_i T(wi, wo) = P(wo) p(wo,
-// wi) mu_o. For visible normals, T is
-//   T(wi, wo) = P(wo) G_1(wo) / G_1(wi) p(wi, wo).
-// Other light is reflected: a part by the Fresnel curve from outside (F = 1 beyond the critical
-// angle), the remainder by perfect mirrors.
+// Transmission out of the denser medium is reciprocal: python/mxeon/models/transmission.py. All
+// other light is reflected: a part with the Fresnel reflectance from outside, which is 1 beyond the
+// critical angle, and the remainder as by perfect mirrors.
 
 #include "lib/questions.glsl"
 #include "../lib/microfacet_transmission.glsl"
 #include "../lib/fresnel_dielectric.glsl"
 
-// Smooth surfaces use this alpha, since the rounding of directions hides narrower lobes.
+// Least alpha. Rounded directions cannot resolve narrower lobes.
 #define PATH_LEAST_ALPHA 1e-4
 
-// Nearer to index 1, a refracted direction does not determine the facet.
+// Least index, and least difference from index 1, where refraction does not determine the facet.
 #define PATH_LEAST_BEND 1e-3
 
-// Least share by which a lobe is drawn, since a fitted albedo may be 0 though some facets reflect.
+// Least albedo in the probability of a lobe, since a fitted albedo may be 0 though facets reflect.
 #define PATH_LEAST_SHARE 1e-3
 
-// Index below the lobe divided by index above.
+// Value of path_eta for the node's ior.
 float path_eta_of(float ior)
 {
     float n = path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
@@ -43,14 +36,13 @@ vec3 path_mirrored(vec3 w, vec3 N)
     return w - 2.0 * dot(w, N) * N;
 }
 
-// w after half a turn about N, for retroreflective lobes.
+// w rotated by 180 degrees about N: the reflection of w by a facet with normal N.
 vec3 path_turned(vec3 w, vec3 N)
 {
     return 2.0 * dot(w, N) * N - w;
 }
 
-// The facet that reflects wo into wi, or refracts wo into a wi below the surface, unless the wall
-// is thin.
+// Normal of the facet that reflects or refracts wo into wi. Thin walls do not bend light.
 vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
 {
     bool through = dot(N, wi) < 0.0;
@@ -62,7 +54,7 @@ vec3 path_facet_between(vec3 wo, vec3 wi, vec3 N)
     return normalize(wo + (through ? path_mirrored(wi, N) : wi));
 }
 
-// Direction of wo refracted by the facet H, or N in total reflection.
+// Direction into which the facet H refracts wo, or N if the facet reflects totally.
 vec3 path_refracted(vec3 wo, vec3 H, vec3 N)
 {
     float cosine = dot(wo, H);
@@ -75,13 +67,13 @@ bool path_is_denser()
     return path_eta < 1.0 && !path_thin;
 }
 
-// Whether facet H loses its light.
+// Whether facet H is lost: it neither reflects wo upwards nor refracts wo downwards.
 bool path_is_lost(MicrofacetLobe lobe, vec3 H)
 {
     return dot(lobe.N, path_turned(lobe.wo, H)) <= 0.0 && dot(lobe.N, path_refracted(lobe.wo, H, lobe.N)) >= 0.0;
 }
 
-// The partner of path_facet. Heights z on the cap are in [-wo.z, 1].
+// Partner of path_facet. Heights z on the cap of visible normals are in [-wo.z, 1].
 vec3 path_partner(MicrofacetLobe lobe)
 {
     vec3 stretch = vec3(lobe.roughness, 1.0);
@@ -92,9 +84,9 @@ vec3 path_partner(MicrofacetLobe lobe)
     return path_world(vec3(flat_cap + wo.xy, max(z + wo.z, M_FLOAT_EPS)) * stretch, lobe.X, lobe.N);
 }
 
-// On the denser side, a lobe uses the averages for the outer direction to which the facet refracts.
-// For values of reflection, any outer direction will do to compare a curve with a dielectric's. The
-// code uses that of a smooth surface, with a cosine of at least 0.5.
+// For wo in the denser medium, the lobe gets the albedo and averages of the outer direction into
+// which path_facet refracts wo. Reflected light only needs a ratio of transmittances, for which any
+// outer direction is suitable.
 void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
 {
     bool below = dot(lobe.N, lobe.wi) < 0.0;
@@ -144,8 +136,9 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     return lobe;
 }
 
-// Density of wi for visible normals: G_1 D / (4 mu_o) for reflection. The Jacobian dh / dwi of
-// refraction is n^2 |wi . h| / |wo + n wi|^2: [Walter2007], Eq. (17).
+// Density of wi for visible normals, in 1/sr. For reflection, it is G_1 D / (4 mu_o). For
+// refraction, the Jacobian dh / dwi of the half vector h is n^2 |wi . h| / |wo + n wi|^2:
+// [Walter2007], Eq. (17).
 float path_facet_pdf(MicrofacetLobe lobe, bool through)
 {
     if ((dot(lobe.N, lobe.wi) < 0.0) != through)
@@ -168,7 +161,8 @@ float path_facet_pdf(MicrofacetLobe lobe, bool through)
     return cosine_o > 0.0 && cosine_i > 0.0 ? 2.0 * visible * cosine_o * jacobian : 0.0;
 }
 
-// G_2 / G_1, the unshadowed share of light that path_facet reflects, or 0 below the horizon.
+// Fraction G_2 / G_1 of the reflected light that other facets do not shadow, or 0 if path_facet
+// reflects wo downwards.
 float path_unshadowed(MicrofacetLobe lobe)
 {
     vec3 wi = path_turned(lobe.wo, path_facet);
@@ -177,7 +171,7 @@ float path_unshadowed(MicrofacetLobe lobe)
     return mu_i * (lobe.mu_o + stretched) / (stretched * mu_i + microfacet_stretched(lobe, wi) * lobe.mu_o);
 }
 
-// The packed direction into which the drawn facet reflects or refracts.
+// Packed direction into which path_facet reflects or refracts wo.
 vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 {
     vec3 H = path_facet;
@@ -194,9 +188,8 @@ vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                           float weight, int distribution, int scatter_mode, inout BSDF bsdf)
 {
-    // scatter_mode: 0 reflects, 1 transmits, 2 does both. A lobe that only transmits also draws
-    // reflected light, since it lies below a reflecting lobe. Without such a lobe, the draws have
-    // weight 0.
+    // scatter_mode is 0 to reflect, 1 to transmit and 2 for both. A lobe that only transmits lies
+    // below a reflecting lobe, so it also draws reflected directions.
     vec3 scale = tint * weight;
     vec3 factor = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
     vec3 albedo = lobe.albedo * F.visible * factor;
@@ -205,7 +198,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     bool valued = path_asked == PATH_VALUE;
     if (path_is_denser())
     {
-        vec3 curve = vec3(1.0); // transmittance / a dielectric's
+        vec3 curve = vec3(1.0); // transmittance / transmittance of a dielectric
         if (valued && !below)
         {
             float n = 1.0 / path_eta;
@@ -222,8 +215,8 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     }
     if (scatter_mode != 1)
     {
-        // For draws, the lobe below keeps its full weight, so that the few facets that refract the
-        // view are drawn.
+        // For draws, the lobe below keeps its full weight, so that facets that refract wo are
+        // drawn.
         bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * weight, 0.0);
         bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }
@@ -255,7 +248,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     path_microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, 0, bsdf);
 }
 
-// Replaces microfacet_is_off, but ignores closureType.
+// Replaces microfacet_is_off. Only the weight turns a lobe off.
 bool path_microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     return weight <= 0.0;

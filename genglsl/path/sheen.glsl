@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sheen for path tracers. Zeltner's lobe, a linearly transformed cosine, is drawn by the transform.
-// Conty and Kulla's lobe, brightest at the horizon, is drawn uniformly.
+// Sheen for path tracers. Zeltner's lobe is drawn as a linearly transformed cosine (LTC). Conty and
+// Kulla's lobe is brightest at the horizon and is drawn uniformly.
 
 #include "lib/questions.glsl"
 #include "../sheen_bsdf.glsl"
 
-// X axis of the frame with wo at azimuth 0, as in zeltner_lobe.
+// X axis of the frame of zeltner_lobe, in which wo has azimuth 0.
 vec3 path_sheen_across(vec3 N)
 {
     vec3 Y = cross(N, path_wo);
@@ -31,7 +31,8 @@ void path_sheen_bsdf(ClosureData closureData, float weight, vec3 color, float ro
         float pdf = 0.5 * M_PI_INV;
         if (mode != 0)
         {
-            // M^-1 = [[a, 0, b], [0, a, 0], [0, 0, 1]]: [MaterialX2026], Zeltner Sheen Model, LTC Inverse Matrix.
+            // The inverse LTC matrix is [[a, 0, b], [0, a, 0], [0, 0, 1]]: [MaterialX2026], Zeltner
+            // Sheen Model, LTC Inverse Matrix.
             float mu_o = clamp(dot(N, path_wo), M_FLOAT_EPS, 1.0);
             float rough = clamp(roughness, 0.01, 1.0);
             float a = mx_zeltner_sheen_ltc_aInv(mu_o, rough);

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// A closure's `response` depends on path_asked. PATH_VALUE: f cos(theta_i) of path_wo and path_wi.
-// PATH_PDF: (weight, density of path_wi, 0). PATH_DRAW: (weight, drawn direction in two numbers).
-// The weight is the mean albedo of the closure's lobes. Weights choose between two closures and mix
-// their densities, so a density is that of the draws, even if weights are inexact.
+// path_asked selects the `response` of a closure:
+//   PATH_VALUE: f cos(theta_i) for path_wo and path_wi
+//   PATH_PDF: (weight, density of path_wi in 1/sr, 0)
+//   PATH_DRAW: (weight, drawn direction packed into two numbers)
+// The weight is the closure's approximate albedo. Weights choose between two closures and average
+// their densities, so densities are exact although weights are not.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 
-// In an environment of radiance 1, INDIRECT returns the albedo. Paths have no derivatives.
+// In an environment of radiance 1, the response to CLOSURE_TYPE_INDIRECT is the albedo. Paths have
+// no derivatives in screen space.
 #define mx_environment_irradiance(N) vec3(1.0)
 #define fwidth(x) vec3(0.0)
 
 #define PATH_WASTED vec2(4.0, 0.0)
 
-// Closures run only when the surface node evaluates a light, not an environment or transmission.
+// Whether a closure must answer: only when the surface node evaluates a light.
 bool path_is_asked(ClosureData closureData)
 {
     return closureData.closureType == CLOSURE_TYPE_REFLECTION && path_asked != PATH_NOTHING;
 }
 
-// Arguments of eonlib's function for direct light, whose value includes F at the half vector.
+// Arguments for the response to direct light, which includes F at the half vector.
 ClosureData path_question_in_direct_light(ClosureData closureData)
 {
     closureData.closureType = CLOSURE_TYPE_REFLECTION;
@@ -29,7 +32,7 @@ ClosureData path_question_in_direct_light(ClosureData closureData)
     return closureData;
 }
 
-// Arguments for the value or for the albedo.
+// Arguments for the value if path_asked is PATH_VALUE, otherwise for the albedo.
 ClosureData path_question(ClosureData closureData)
 {
     closureData = path_question_in_direct_light(closureData);
@@ -42,7 +45,7 @@ float path_mean(vec3 color)
     return dot(max(color, 0.0), vec3(1.0 / 3.0));
 }
 
-// Directions from world to the frame of X and N, and back.
+// Components of w along X, cross(N, X) and N. path_world is the inverse.
 vec3 path_local(vec3 w, vec3 X, vec3 N)
 {
     return vec3(dot(w, X), dot(w, cross(N, X)), dot(w, N));
@@ -59,13 +62,13 @@ vec3 path_across(vec3 N)
     return normalize(cross(abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), N));
 }
 
-// Response of a lobe: the weight, and `drawn` or the density of path_wi.
+// Response of a lobe: the weight, with the packed direction `drawn` or the density `pdf`.
 vec3 path_answer(float weight, vec2 drawn, float pdf)
 {
     return path_asked == PATH_DRAW ? vec3(weight, drawn) : vec3(weight, pdf, 0.0);
 }
 
-// Response of two lobes. The random number is rescaled and used again.
+// Response of two lobes. A draw chooses a lobe by path_u.z, which is then rescaled.
 vec3 path_either(vec3 a, vec3 b)
 {
     float total = a.x + b.x;
@@ -83,19 +86,18 @@ vec3 path_either(vec3 a, vec3 b)
     return vec3(total, first ? a.yz : b.yz);
 }
 
-// Response of a closure times a factor.
 vec3 path_scaled(vec3 response, vec3 factor)
 {
     return path_asked == PATH_VALUE ? response * factor : vec3(response.x * path_mean(factor), response.yz);
 }
 
-// The closure called last sets the response of the material.
+// The closure called last is the root of the material.
 void path_end(BSDF bsdf)
 {
     path_root = bsdf.response;
 }
 
-// Cosine sampling about N for a lobe whose response is the value or the albedo.
+// Draws wi in proportion to the cosine with N. On entry, the response is the value or albedo.
 void path_cosine(vec3 N, inout BSDF bsdf)
 {
     if (path_asked != PATH_VALUE)
