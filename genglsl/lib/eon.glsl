@@ -75,7 +75,8 @@ float qon_albedo_dir(float mu, float sigma)
     return qon_aq(sigma) + qon_bq(sigma) * G_over_pi;
 }
 
-// Albedo of EON: [Portsmouth2025], Eq. (28), simplified to rho (1 - r H (1 - rho) / D).
+// Albedo of EON: [Portsmouth2025], Eq. (28), simplified to rho (1 - r H (1 - rho) / D), where H is
+// fon_loss and D is eon_denominator.
 vec3 eon_albedo_dir(float mu, vec3 rho, float roughness)
 {
     vec3 loss = roughness * fon_loss(mu) * (vec3(1.0) - rho) / eon_denominator(rho, roughness);
@@ -89,8 +90,8 @@ float oren_nayar_quotient(float value, float divisor)
     return divisor > 1.0e-37 ? value / divisor : 0.0;
 }
 
-// Quotient s / t_q of [Portsmouth2025], Eq. (4). For two grazing directions, where s / t_q has no
-// limit, the result is 0.
+// Quotient s / t_q of [Portsmouth2025], Eq. (4), or 0 if both cosines are 0 and s / t_q has no
+// limit.
 float qon_quotient(float mu_o, float mu_i, float s)
 {
     return oren_nayar_quotient(max(s, 0.0), max(mu_o, mu_i));
@@ -103,7 +104,7 @@ float fon_quotient(float mu_o, float mu_i, float s)
 }
 
 // Multiple scattering, [Portsmouth2025], Eq. (19), divided by fon_lambert and H(mu_o) H(mu_i).
-// Since 1 - E = r H / (1 + c1 r), the powers of r cancel, and no divisor is 0.
+// Since 1 - E = r H / (1 + c1 r), powers of r cancel, and no divisor is 0.
 vec3 eon_multiple_ratio(vec3 rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);

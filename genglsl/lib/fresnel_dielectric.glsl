@@ -46,10 +46,10 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// Fractions of light that facets transmit into a less dense medium (ior < 1). x is the average of 1
-// - F over visible facets. y follows from reversed paths, without light that facets reflect back.
+// Two fractions of light that facets transmit if ior < 1. The first is the average of 1 - F over
+// visible facets. The second follows from reversed paths, without light that facets reflect back.
 // Source and derivation: tools/fits/ggx_inside.py. Domain: mu and alpha in [1e-4, 1], ior in [0.33,
-// 0.98]. Largest absolute errors: 2.8e-2 of the albedo with x, and 3.4e-2 of y.
+// 0.98]. Largest absolute errors: 2.8e-2 of the albedo with the first, 3.4e-2 of the second.
 vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 {
     float mu2 = mu * mu;
@@ -69,8 +69,8 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 power = vec2(0.8025 - 0.3416 * muy, 0.52381 + 0.43633 * x);
     float risen = exp(1.80744 + 0.85484 * ior - 3.06595 * alpha - 3.09838 * x) * alpha * bent / mu;
 
-    // r2 is the square of tau_m / tau_c in tools/fits/ggx_inside.py. r2 and the divisor of p would
-    // be 0 at ior 0. The square of v would overflow above 1e19.
+    // r2 is the square of tau_m / tau_c in tools/fits/ggx_inside.py. Without clamps, r2 and the
+    // divisor of p would be 0 at ior 0, and the square of v would overflow above 1e19.
     vec2 r2 = max((1.0 - bent) * (mu2 + a * alpha2) / (bent * (s2 + b * alpha2)), 1e-30);
     vec2 e2 = k2 / r2;
     vec2 v = clamp((r2 - 1.0) * sqrt(e2), -1e6, 1e6);
@@ -80,7 +80,7 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 Q = part * S;
     vec2 q = 4.0 * Q * (1.0 - Q);
     vec2 t = sqrt(1.0 + (4.0 * k2 - 1.0) * q) + 1.0 - 2.0 * Q;
-    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // as g above, but divided by mu
+    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // g above / cosine
     vec2 s = 1.0 / (1.0 + g);
     vec2 p = ior / max(ior * ior + g, 1e-30);
     // Rounding may make 1 - F exceed 1.
@@ -89,8 +89,9 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 
 // Average of F over visible facets if ior >= 1. Near ior 1, F depends only on the cosine divided by
 // sqrt(ior^2 - 1). So below ior 1.03, the fit for ior 1.03 is used at k mu and k alpha, clamped to
-// 1. The fitted cosine is divided by k, or multiplied by mu if k mu exceeds 1. Largest absolute
-// error of the albedo below ior 1.03, where k alpha exceeds 1: 9.3e-3.
+// 1, where k is the ratio of the two square roots. The fitted cosine is divided by k, or multiplied
+// by mu if k mu exceeds 1. Largest absolute error of the albedo below ior 1.03, where k alpha
+// exceeds 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));

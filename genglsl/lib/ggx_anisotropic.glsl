@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Isotropic GGX facets that represent anisotropic facets in fits. wo is in the frame of the
-// tangent. Source and equations: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1] with a
-// ratio up to 50, cosines from 0.01. Largest relative error of E_ss: 2.5e-2. Largest absolute error
-// of a dielectric's albedo: 3.4e-2.
+// Isotropic GGX facets that represent anisotropic facets in fits. wo is in the tangent frame.
+// Source and equations: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1] with a ratio up
+// to 50, cosines from 0.01. Largest relative error of E_ss: 2.5e-2. Largest absolute error of a
+// dielectric's albedo: 3.4e-2.
 
 #include "ggx_albedo.glsl"
 

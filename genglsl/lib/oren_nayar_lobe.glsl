@@ -27,7 +27,6 @@ void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float ro
 
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
-        // Light from below the horizon has cosine 0, so the response is 0.
         float mu_i = clamp(dot(N, wi), 0.0, 1.0);
         float s = dot(wo, wi) - mu_o * mu_i;
         vec3 brdf = energy_compensation ? eon_brdf_mu(mu_o, mu_i, s, color, roughness)

@@ -19,15 +19,14 @@
 #define THIN_FILM_LEAST 1e-12  // least divisor, for roots of 0 and full reflection
 
 // The sum over orders ends if a bound of the next squared term is at most VALUE times the squared
-// mean reflectances or WIDTH times the squared width. The bound decreases by RATIO or faster, so a
-// mean of 1e-3 needs ln(VALUE 1e-6) / ln(RATIO) = 86.1 orders, at most COUNT. Source:
+// mean reflectances or WIDTH times the squared width of cosines. The bound decreases by RATIO or
+// faster, so a mean of 1e-3 needs ln(VALUE 1e-6) / ln(RATIO) = 86.1 orders, at most COUNT. Source:
 // tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
 #define THIN_FILM_ORDER_RATIO 0.6
 #define THIN_FILM_ORDER_COUNT 87
 
-// A complex number per color channel.
 struct ThinFilmComplex
 {
     vec3 re;
@@ -60,8 +59,8 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
 {
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
-        // The sign depends on whether the film is denser. The factor 1 - 1e-6 tolerates rounding of
-        // F0. A negative curve counts as 0.
+        // The sign of r_23 depends on whether the film is denser. The factor 1 - 1e-6 tolerates
+        // rounding of F0. A negative curve counts as 0.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
         r23_p.re = r * (2.0 * step(vec3(F0), fd.F0) - 1.0);
@@ -93,8 +92,8 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
     }
 }
 
-// Section Airy Summation, DC term R_12 + R_dc = 1 + C_0. C_0 = R_dc - T_12 is a product here, which
-// does not cancel.
+// Section Airy Summation: the DC term R_12 + R_dc is 1 + C_0. C_0 = R_dc - T_12 is computed as a
+// product, in which nothing cancels.
 vec3 thin_film_c0(float r21, ThinFilmComplex r23)
 {
     float R12 = r21 * r21;
@@ -110,7 +109,7 @@ vec3 thin_film_rec709(vec4 S)
 
 // Section Airy Summation, higher-order terms: the sum of C_m S_m / 2 over m and both polarizations,
 // with C_m = C_0 z^m and S_m / 2 = fade^(m^2) exp(i mu_k phi m). A real z needs no sine: S_(m + 1)
-// + fade^(4 m) S_(m - 1) = fade^(2 m) Re(S_1) S_m. `spread` is the change of phi in a node. A
+// + fade^(4 m) S_(m - 1) = fade^(2 m) Re(S_1) S_m. `spread` is the change of phi over the width. A
 // factor with spread^4, an arbitrary power, damps fast waves.
 vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex z_p, float phi, float spread,
                       float limit, bool is_real)
@@ -170,7 +169,8 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     return sum;
 }
 
-// F_airy at cosine mu, or its mean over a width of cosines. A film index below 1 counts as 1.
+// F_airy at cosine mu, or its mean over cosines of the given width. A film index below 1 counts as
+// 1.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
     // Section Three-Layer Geometry: g = n mu_t. This form of g^2 keeps all digits of a small mu.

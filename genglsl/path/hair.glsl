@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hair for path tracers. The longitudinal distribution M_p of lobe p is drawn as in [dEon2013]. The
-// azimuthal distribution N_p, a logistic cut at +-pi, is drawn by inversion. Both describe light
-// that the cuticle has tilted, so draws are tilted back.
+// azimuthal distribution N_p, a logistic distribution cut at +-pi, is drawn by inversion. Both
+// describe light that the cuticle has tilted, so draws are tilted back.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"
@@ -76,7 +76,7 @@ float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
     return sum / dot(hair.weight, vec4(1.0));
 }
 
-// Draws a direction of light. path_u.z selects the lobe. The first 12 bits of path_u.xy select the
+// Draws wi. path_u.z selects the lobe. The first 12 bits of path_u.x and path_u.y select the
 // inclination, and the next 12 bits select the azimuth.
 vec3 path_hair_draw(PathHair hair, vec3 wo)
 {
@@ -99,7 +99,7 @@ vec3 path_hair_draw(PathHair hair, vec3 wo)
     vec2 tilted = vec2(sqrt((1.0 - S) * (1.0 + S)), S);
     vec2 inclined = path_hair_untilted(tilted, hair.tilt[p]);
     vec2 folded = path_hair_untilted(tilted * vec2(-1.0, 1.0), hair.tilt[p]);
-    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if neither direction exists
+    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if neither exists
     bool folding = path_u.z < folds;
     inclined = folding ? folded : inclined;
     path_u.z = folding ? path_u.z / folds : (path_u.z - folds) / (1.0 - folds);

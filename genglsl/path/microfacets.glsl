@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Microfacet lobes for path tracers: docs/path_tracing.md. The nodes' code is included again.
-// Macros replace three functions of microfacet_lobe.glsl.
+// Microfacet lobes for path tracers: docs/path_tracing.md. Macros replace three functions in the
+// nodes' code.
 //
 // If wo lies in the denser medium, a facet may be lost: it neither reflects wo into that medium nor
 // refracts wo out of it. A draw replaces a lost facet by its partner, the facet at the mirrored
-// height on the spherical cap of visible normals [Dupuy2023]. Mirroring preserves areas, so a facet
-// whose partner is lost is drawn twice as often.
+// height on the spherical cap of visible normals [Dupuy2023]. Mirroring preserves areas and is its
+// own inverse, so a facet whose partner is lost is drawn twice as often.
 //
-// Transmission out of the denser medium is reciprocal: python/mxeon/models/transmission.py. All
+// Transmission out of the denser medium is reciprocal: see python/mxeon/models/transmission.py. All
 // other light is reflected: a part with the Fresnel reflectance from outside, which is 1 beyond the
 // critical angle, and the remainder as by perfect mirrors.
 
@@ -136,7 +136,7 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     return lobe;
 }
 
-// Density of wi for visible normals, in 1/sr. For reflection, it is G_1 D / (4 mu_o). For
+// Density of wi for visible normals, in 1/sr. For reflection, the density is G_1 D / (4 mu_o). For
 // refraction, the Jacobian dh / dwi of the half vector h is n^2 |wi . h| / |wo + n wi|^2:
 // [Walter2007], Eq. (17).
 float path_facet_pdf(MicrofacetLobe lobe, bool through)

@@ -11,8 +11,8 @@ uvec4 path_mixed(uvec4 v)
     return v;
 }
 
-// Four random numbers of 24 bits in [0, 1) from counters, such as pixel, pass and bounce, by pcg4d
-// of [Jarzynski2020].
+// Four random numbers of 24 bits in [0, 1) from counters, such as pixel, pass and bounce: pcg4d of
+// [Jarzynski2020].
 vec4 path_random(uvec4 counters)
 {
     uvec4 v = path_mixed(counters * 1664525u + 1013904223u);

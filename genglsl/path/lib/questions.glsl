@@ -56,7 +56,7 @@ vec3 path_world(vec3 w, vec3 X, vec3 N)
     return normalize(w.x * X + w.y * cross(N, X) + w.z * N);
 }
 
-// Any unit vector orthogonal to N.
+// A unit vector orthogonal to N.
 vec3 path_across(vec3 N)
 {
     return normalize(cross(abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), N));
