@@ -6,7 +6,7 @@
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
-// Least index of refraction. In float32, the square of a smaller index is lost next to 1, so that
+// Least index of refraction. In float32, the square of a smaller index is lost next to 1, so
 // MaterialX's curve is 0 / 0 along the normal.
 #define MICROFACET_LEAST_INDEX 1e-3
 

@@ -7,9 +7,9 @@
 // as by a solid sphere. If MaterialX renders transmission as opacity, the result is the tint.
 //
 // MaterialX's squared exit cosine is 1 - n^2 (1 - q^2), where q is the cosine inside. If rounding
-// makes it negative, 0 / 0 follows. Lengthening wo by d adds 8 d q^2 / n^2, at grazing 8e-6 n^2,
-// three times the rounding of seven operations. Near n = 1 and above 4, d is too large, so n is
-// clamped to [1.001, 4]. Smooth surfaces keep n above 4, with a larger cosine.
+// makes the square negative, 0 / 0 follows. Lengthening wo by d adds 8 d q^2 / n^2, at grazing 8e-6
+// n^2, three times the rounding of seven operations. Near n = 1 and above 4, d is too large, so n
+// is clamped to [1.001, 4]. Smooth surfaces keep n above 4, with a larger cosine.
 //
 // A Schlick curve that is F0 except at grazing makes MaterialX transmit `share`. A and B are
 // MaterialX's fits.

@@ -7,8 +7,8 @@
 #define SUBSURFACE_GAUSS2 vec2(0.66120939, 0.36076157)
 #define SUBSURFACE_GAUSS3 vec2(0.23861919, 0.46791393)
 
-// Mean of max(cos(theta), 0), per color channel, over the circle on the sphere at the distance
-// `chord` from a point with cosine mu.
+// Mean of max(cos(theta), 0), per channel, over the circle on the sphere at the distance `chord`
+// from a point with cosine mu.
 vec3 subsurface_ring(float mu, vec3 chord)
 {
     vec3 squared = chord * chord;

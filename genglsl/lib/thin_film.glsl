@@ -177,7 +177,7 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     float n = max(fd.tf_ior, 1.0);
     float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 
-    // Section First Interface. Without a film, the amplitudes r_21 are 0.
+    // Section First Interface. Without a film, amplitudes r_21 are 0.
     float r21_s = (g - mu) / max(g + mu, THIN_FILM_LEAST);
     float r21_p = (g - n * n * mu) / max(g + n * n * mu, THIN_FILM_LEAST);
 
