@@ -57,7 +57,7 @@ def same(frame: Frame) -> Frame:
 
 
 def premultiplied(frame: Frame) -> Frame:
-    """A frame without an environment; mixes scale lobe weights (new in MaterialX 1.39.5)."""
+    """A frame without an environment; from MaterialX 1.39.5, mixes can scale lobes' weights."""
     from mxeon.shaders.options import offers
 
     methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
@@ -118,7 +118,7 @@ AXES: dict[str, dict[str, Build]] = {
 
 @lru_cache(maxsize=1)
 def frames() -> tuple[tuple[set[str], Frame], ...]:
-    """All frames, each with the names of the frame's states, sorted by the generator's methods."""
+    """All frames with names of states. Frames with equal generator methods are consecutive."""
     rows = []
     for states in covering(tuple(map(tuple, AXES.values()))):
         frame = Frame()

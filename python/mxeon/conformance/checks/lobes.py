@@ -370,7 +370,7 @@ def unsigned(batch: Batch) -> Batch:
 
 
 def negative(case: Case) -> Iterator[Compared]:
-    """Compare the light for a color with a negative red channel with the expected light.
+    """Check the light for colors whose red channel is negative.
 
     Some nodes treat negative red as 0. For other nodes, the red light is the negative of the light
     for the opposite, positive red. The light of EON is a rho + b rho^2 / (1 - rho (1 - <E>)), where

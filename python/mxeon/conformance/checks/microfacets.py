@@ -295,9 +295,9 @@ CLIENT = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 
 
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
-    """Compare the light of each known client's methods with the light that is correct for all."""
+    """For the generator methods of each known client, compare the light with the correct light."""
     transmits = TRANSMITTING(case.spec)
-    if transmits:  # methods of Storm, then methods of MaterialXView
+    if transmits:  # methods of the clients Storm and MaterialXView
         clients = [Methods("prefilter", "opacity"), Methods("prefilter", "refraction")]
         if CLEAR(case.spec):  # shaders of mode RT also contain the code of mode T
             clients += own_lookups(case)
@@ -318,7 +318,7 @@ def transmitted_to_client(case: Case, evaluate: Evaluate, methods: Methods) -> I
         light = case.outputs(batch, evaluate(case.inputs(batch), "transmission", client=CLIENT))
         if not opaque:
             light = light / CLIENT.intensity
-            if "tint" in batch.inputs:  # a two-sided client tints light twice
+            if "tint" in batch.inputs:  # two-sided: tinted on entry and on exit
                 batch = batch.altered(tint=np.square(batch.inputs["tint"]))
         yield limited(case.of(TransmissionSpec), batch, light, opaque)
 
@@ -437,7 +437,7 @@ def refraction(case: Case) -> Compared:
 
 
 def transmitted_sky(case: Case, batch: Batch) -> tuple[Array, Mask]:
-    """Mean of the sky seen through a surface, and a mask of the pairs that pass enough light."""
+    """Mean radiance of the sky through a surface, and a mask of pairs that pass enough light."""
     uniform = case.transmitted(batch)
     bright = np.asarray(uniform.min(axis=1) > LEAST_PASSED)
     uneven = case.transmitted(batch, samples.sky_map())
@@ -494,7 +494,7 @@ def smooth(case: Case) -> Batch:
 
 
 def transmitted_edges(case: Case) -> Compared:
-    # Each pair needs a slow sum over directions, so only every fifth edge of the domain is tested.
+    # Each pair needs a slow sum over directions, so test a fifth of the pairs with extreme inputs.
     batch = case.backend.edges.where(slice(None, None, 5))
     return Compared(batch, case.transmitted(batch), np.zeros((1, 3)))
 
@@ -558,13 +558,13 @@ def film_limit(case: Case) -> list[Compared]:
 
 
 def film_energy(case: Case) -> Iterator[Compared]:
-    for batch in case.few[::2]:  # skip special directions; other checks cover IOR 0
+    for batch in case.few[::2]:  # skip special pairs; other checks cover films of IOR 0
         most = case.direct(mirror_of(case, batch))
         yield Compared(batch, np.maximum(case.direct(batch), most), most)
 
 
 def diagnose_average(case: Case) -> Diagnosis:
-    """Test whether k is missing, or F_ss is replaced by F at one cosine or a mean of F0 and F90."""
+    """Test for a missing k, and for F at one cosine, or a mean of F0 and F90, in place of F_ss."""
     batch, measured, expected = film_average(case)
     (_, k), (_, expected_k) = (
         film_factors(case, value, batch, 1.0) for value in (case.direct, case.expected)

@@ -35,7 +35,7 @@ def above(case: Case) -> Iterator[Compared]:
 
 
 def between(case: Case) -> Iterator[Compared]:
-    """Light through a medium, compared with light without the medium times the transmittance."""
+    """Compare light through a medium with the transmittance times the light without the medium."""
     clear = {each.name: np.zeros(3) for each in case.spec.inputs if each.type == "vector3"}
     for batch in case.batches:
         lit = batch.altered(**{"bottom/weight": 1.0})

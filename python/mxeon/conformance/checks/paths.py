@@ -70,9 +70,9 @@ FUNCTIONS = {
 }
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # shader languages of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
-ANSWERS = cache.Recent[Array](64)  # cache for a check and the check's control
-# Views of a solid. From inside, many facets are below the critical angle for one view, and few for
-# the next. At the third view, no light leaves a smooth solid.
+ANSWERS = cache.Recent[Array](64)  # cache shared by a check and the check's negative control
+# Views of a solid. From inside, many facets are below the critical angle at one view, and few
+# facets at another view. At the third view, no light leaves a smooth solid.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 # Smallest value that must be sampled. Smaller values may be missed, because a sheen's fitted albedo
@@ -96,8 +96,8 @@ TRANSPARENT: dict[str, float | str] = {
 }
 WALLS = ("thin_walled", "geometry_thin_walled")
 
-# For each node, the input with the index of refraction, and other inputs of glass. The table has no
-# UsdPreviewSurface, because that node's Schlick curve has no IOR for the denser side.
+# For each node, the name of the IOR input, and other inputs with values that make the node glass.
+# UsdPreviewSurface is missing, because that node's Schlick curve has no IOR for the denser side.
 GLASS: dict[str, tuple[str, Values]] = {
     "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.4, 0.4)}),
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
@@ -112,8 +112,8 @@ INDEXED = (
     | check.family(combinations.CombinedSpec)
     | check.family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
 )
-# For each node, inputs of clear glass of IOR INDEX, and inputs of the glass's Fresnel curve for
-# light from outside.
+# For each node, inputs of clear glass of IOR INDEX, and inputs for the Fresnel curve with which the
+# glass reflects light from outside.
 SOLIDS: dict[str, tuple[Values, dict[str, Array]]] = {
     "dielectric_bsdf": (
         {**GLASS["dielectric_bsdf"][1], "ior": INDEX},
@@ -292,8 +292,8 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
 
     Each row has the deviation in standard deviations, whether the view is inside a solid, and a
     batch with the view and the material. A surface shader has three views of a solid and of a thin
-    wall. A control has three views, because a control stops at the first failure. A quadrature with
-    few nodes cannot hide a failure, because quadrature errors only increase the deviation.
+    wall. A deliberately wrong case has three views in all, because the first failure is enough.
+    Quadratures with few nodes cannot hide a failure, because errors increase the deviation.
     """
     u = random(DRAWS, generator())
     for text, batch in subjects(case, False, True):
@@ -430,7 +430,7 @@ def path_emission(case: Case) -> Iterator[Compared]:
     spec = case.of(emission.EmissionSpec)
     permutations = np.stack([np.roll(np.eye(3), shift, axis=0) for shift in range(3)])
     for batch in (*case.batches, case.backend.take(spec.backs)):
-        if "normal" in batch.inputs:  # the axis of a cone comes from another node
+        if "normal" in batch.inputs:  # the axis of a cone is connected to another node
             continue
         frame = permutations[np.arange(len(batch.wo)) % 3]
         inputs = {**batch.inputs, "normal": frame[:, :, 2], "tangent": frame[:, :, 0]}

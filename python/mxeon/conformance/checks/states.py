@@ -110,7 +110,7 @@ def upright(frames: Array, rng: Random) -> Array:
 
 
 def on_axes(frames: Array, rng: Random) -> Array:
-    """Frames in random order with normals along +x, -x, ... -z; half of the tangents are axes."""
+    """Frames in random order. All normals and half of the tangents are along coordinate axes."""
     turns = [np.roll(np.eye(3), shift, axis=0) for shift in range(3)]
     tangents = np.eye(3), np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
     rows = product(tangents, turns, ([1, 1, 1], [1, -1, -1]))
@@ -265,7 +265,7 @@ def covering(axes: tuple[tuple[str, ...], ...]) -> tuple[tuple[str, ...], ...]:
     return tuple(chosen)
 
 
-@lru_cache(maxsize=1)  # shared by a check and its control
+@lru_cache(maxsize=1)  # shared by a check and the check's negative control
 def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     """Pixels with combinations of the states that the node and the engine support."""
     lobe, rng = backend.lobe, samples.generator()
@@ -275,8 +275,8 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
         unsupported.add("inputs from an image")
     if "frame" in unsupported:
         unsupported.add(TURNED_SKY)
-    # Skip the dim, two-sided environment if the effect is unknown. Surface shaders do not expose
-    # the tints of lobes, and light that passes by opacity ignores the environment's intensity.
+    # The effect of a dim, two-sided environment is unknown if a surface shader hides the tints of
+    # lobes, or if light passes by opacity, which ignores the environment's intensity.
     if Ability.MATERIAL in lobe.requires or backend.host.active.transmission == "opacity":
         unsupported.add(TWO_SIDED)
     axes = tuple(
@@ -290,7 +290,7 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
         batch = batch.altered(**lobe.random_inputs(rng, len(batch.wo)))
     if lobe.types.get("roughness") == "vector2":
         alpha = np.array(batch.inputs["roughness"])
-        alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # every other pixel has two different alphas
+        alpha[::2, 1] = np.roll(alpha[:, 0], 1)[::2]  # half of the pixels have two different alphas
         batch = batch.altered(roughness=alpha)
     if "weight" in lobe.names:
         # Keep weights equal in each 2 x 2 square of pixels, because screen-space derivatives are
@@ -442,7 +442,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
         else:
             sky = samples.sky_map() if kind == "uneven" else None
             values = drawn(batch, partial(case.backend.albedo, irradiance=sky), layout)
-            if "tint" in batch.inputs and not case.opaque:  # two-sided surfaces tint light twice
+            if "tint" in batch.inputs and not case.opaque:  # if two-sided, tint on entry and exit
                 twice = np.repeat([groups[n].client.two_sided for n, _ in rows], EACH)
                 tint = batch.inputs["tint"]
                 batch = batch.altered(tint=np.where(twice[:, np.newaxis], tint * tint, tint))
@@ -502,7 +502,7 @@ def shared(wrong: Mask, states: Sequence[set[str]]) -> results.Cause:
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
-    """Names of groups, which precede a colon, and of states except the first state of an axis."""
+    """Names of groups (words before a colon), and of all states that are not first in an axis."""
     first = {next(iter(each)) for each in axes.values()}
     parts = [state.split(":") for state in states if state not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
@@ -515,7 +515,7 @@ ROWS = (
           applies=check.family(LobeSpec), measure=states, control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
           # If opacity replaces refraction, a lobe in mode T passes the tint at every view, so the
-          # control, which exchanges views, could not fail.
+          # negative control, whose views are exchanged on purpose, could not fail.
           methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),
 )
 # fmt: on

@@ -150,7 +150,7 @@ def without_effect(case: Case) -> list[str]:
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
-# The host evaluates only the first row; the result replaces the results of all other rows.
+# The host evaluates only the first pair; the result of the first pair is the result of all pairs.
 ignore_changes = controls.Control(
     "every change is dropped",
     lambda case: replace(
@@ -175,7 +175,7 @@ SENTENCE = Comparison("value", direct_values, lambda case: case.valued.value_can
 
 
 def diagnose_sentence(case: Case) -> Diagnosis:
-    """Find which formula for the sentence the shader, or at least the shader's graph, follows."""
+    """Find the formula that the shader or, failing that, the shader's graph uses for a sentence."""
     from mxeon.conformance.reference import Reference
 
     spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)

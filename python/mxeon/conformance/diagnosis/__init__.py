@@ -175,7 +175,7 @@ def _without_fault(
             if spec.flag is not None and reference.diffuse_model(spec.model).title == first
         )
         return (Cause(Kind.MODEL, first, values=next(flags, ()), rms=least),)
-    # Find a region in which the values differ from the node's own model, or a lack of accuracy.
+    # Find a region in which values differ from the node's own model, or report a lack of accuracy.
     if not wrong.any():
         return (SINGLY_RIGHT,)
     if region := smallest(cases, tolerance):
@@ -294,7 +294,7 @@ def _backs(case: Case) -> Iterator[Compared]:
 
 
 def _rescaled_candidates(case: Case) -> Sequence[Candidate]:
-    """Candidates for values, rescaled so that errors are uniform."""
+    """Candidates for values, rescaled so that one tolerance suits all pairs."""
 
     def rescaled(candidate: Candidate, batch: Batch) -> Array:
         values = candidate.values(batch)
@@ -393,7 +393,7 @@ def diagnose_frame(case: Case) -> Diagnosis:
         causes = not_finite([compared]) or _region([compared], tolerance)
         for name in ("normal", "tangent", "curve_direction"):
             causes = causes or without_effect(case, name)
-        if not causes:  # the worst rotated pair may be correct if all pixels have the same inputs
+        if not causes:  # evaluate the worst pair again, with the same inputs in all pixels
             errors = tolerance.metric(compared.measured, compared.expected)
             same = compared.where(np.full(4, errors.argmax()))
             same = same._replace(measured=measure(same.batch))
@@ -409,7 +409,7 @@ def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...
 
 
 def ignored(name: str) -> Callable[[Case], Diagnosis]:
-    """A function that reports that an input has no effect, or else explains the values."""
+    """A function that reports an ignored input or, if the input has an effect, explains values."""
     return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).causes)
 
 

@@ -76,7 +76,7 @@ class HostValues:
         return self.pictures[key][..., : DRAWN[kind]]
 
     def at(self, mask: NDArray[np.bool_]) -> Measure:
-        """A function that returns values of elements at the pixels of a mask, (size, size)."""
+        """A function that draws values and selects pixels by a mask, (size, size)."""
         return lambda elements, kind, output: self(len(mask), elements, kind, output)[mask]
 
 

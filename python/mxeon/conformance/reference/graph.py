@@ -36,7 +36,7 @@ from mxeon.shaders.inner_lobes import Nodes, Path
 
 # Types that a generated shader can draw as a color, and the number of components of each type.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# A function that returns values drawn by a host, for nested elements, a type, and an output's name.
+# A function that draws an output on a host; arguments are nested elements, a type and a name.
 Measure: TypeAlias = Callable[[drawn_values.Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
@@ -225,7 +225,7 @@ class Graph(Nodes):
     def _connected(self, around: Path, port: mx.PortElement, label: str = "") -> Path:
         """Path of the source to which an input or output of the graph at `around` is connected.
 
-        If the source needs an unsupported node and the input has a label, the value is measured.
+        If the source needs an unsupported node and `label` is given, the host draws the value.
         """
         path, kind = self.upstream(around, port), port.getType()
         assert path

@@ -17,8 +17,8 @@ from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
-# The albedo of a mix of a sum over a base has derivatives of at most 1 and 2 with respect to the
-# two albedos.
+# If a mix with the sum of `top` and `base` covers `base`, the layer's albedo has derivatives of at
+# most 1 and 2 with respect to the albedos of `top` and `base`.
 THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
 ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
 THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")
@@ -26,7 +26,7 @@ NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=T
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # Both compared values are the same product with an exact factor.
+    # The measured and the expected value are the same product, and the factor is exact.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }

@@ -228,7 +228,7 @@ class AbsentSpec(spec.Spec):
         return nodes.document_text(self.text)
 
 
-# A node definition without any implementation; a control must find the implementation missing.
+# A node without an implementation; the check of implementations must fail for this node.
 UNIMPLEMENTED = AbsentSpec(
     title="a node without an implementation",
     node="mxeon_absent",
@@ -302,7 +302,7 @@ EMISSION_SPECS = tuple(
 
 # --- media: VDF nodes between two transmitting lobes ----------------------------------------------
 
-# The exponential of a sum, a product, and the quotient of two results have 12 roundings in all.
+# A sum, the sum's exponential, a product, and a quotient of two results have 12 roundings in all.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
 GLASS = nodes.Node(
     "dielectric_bsdf",

@@ -147,7 +147,7 @@ class HairSpec(PbrSpec):
         return np.asarray(front * near + (1.0 - front) * far)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by max(value, LEAST) plus the slopes along a pair's four angles."""
+        """Divide values by the sum of max(value, LEAST) and of the slopes along four angles."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:

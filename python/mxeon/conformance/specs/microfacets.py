@@ -39,7 +39,7 @@ LEAST_TANGENT_COSINE = 0.1  # smallest cosine with rotated tangents
 COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which Fresnel curves are tested for values below 0
 
 # fmt: off
-# The first IOR of `materials` reflects enough light in pictures for the controls to fail.
+# The first IOR of `materials` reflects enough light for deliberate errors to show in pictures.
 INDEX = spec.Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
               beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
@@ -76,7 +76,7 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average of a film's reflectance is worst for a film around a medium of IOR 1.
+# MaterialX's average of a film's reflectance is least accurate for a film around IOR 1.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
@@ -221,7 +221,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The batches of any lobe, and a batch near the mirror direction. Alphas are equal."""
+        """The usual batches, and a batch near the mirror direction; both alphas are equal."""
         batches = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*batches, self.mirrored(counts)[0]))
 
@@ -517,8 +517,8 @@ def _mean(value: float, words: str) -> Tolerance:
     return single(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
-# UNSUMMED is largest for thin films on metals at grazing views. The error of F_ss is largest for
-# unequal IORs.
+# Orders that are not summed matter most for thin films on metals at grazing views. The error of
+# F_ss is largest for unequal IORs.
 UNSUMMED = Term(8e-4, "orders that are not summed")
 FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss in three cosines").terms, UNSUMMED)
 # fmt: off
@@ -537,7 +537,7 @@ FILM_ERRORS = {
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
         quantity=Quantity.REFLECTANCE_RMS, metric=tolerance.root_mean_square),
-    # Shaders compute F_ss by a sum if there is a film, even a film without effect, else by a fit.
+    # Shaders compute F_ss by a sum under any film, even a film without effect, otherwise by a fit.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
     "film_energy": VALUE,
     "retroreflection": lobes.BURLEY_VALUE,
@@ -559,8 +559,8 @@ class Films(NamedTuple):
     thickness: tuple[float, float]  # range in nm
 
 
-# tools/fits/thin_film.py measures the mean errors of the sets of films below.
-# Rough lobes under films with few fringes. Masking decides which part of the curve is visible.
+# Sets of films. tools/fits/thin_film.py measures the mean error of each set.
+# Rough lobes under films with few fringes; facets mask a part of the Fresnel curve.
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
 FRINGED = STEEP._replace(thickness=(50.0, 1000.0))
 GLOSSY = STEEP._replace(alpha=(0.03, 0.1))  # visible facets are similar, so few cosines suffice
@@ -593,7 +593,7 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random inputs with dielectrics of IOR 1 or more; if `edged`, some films match the IOR.
+        """Random inputs, with an IOR of at least 1; if `edged`, some films have the base's IOR.
 
         For IORs below 1, averages over few cosines do not resolve the curve at the critical angle.
         """
@@ -633,7 +633,7 @@ class FilmSpec(FacetSpec):
     few = spec.ValueSpec.few
 
     def views(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """Views of the random pairs, and views for which averages over three cosines are worst."""
+        """Views of random pairs, and views at which averages over three cosines are inaccurate."""
         batch = batches[0].where(batches[0].wo[:, 2] >= self.least_cosine)
         easy = batch.first(counts.albedos)
         easy = replace(easy, inputs=simple(easy.inputs))
