@@ -47,9 +47,9 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
 }
 
 // Two fractions of light that facets transmit if ior < 1. The first is the average of 1 - F over
-// visible facets. The second follows from reversed paths, without light that facets reflect back.
+// visible facets. The second is that of reversed paths, without light that facets reflect back.
 // Source and derivation: tools/fits/ggx_inside.py. Domain: mu and alpha in [1e-4, 1], ior in [0.33,
-// 0.98]. Largest absolute errors: 2.8e-2 of the albedo with the first, 3.4e-2 of the second.
+// 0.98]. Largest absolute errors: 2.8e-2 of an albedo by the first, 3.4e-2 of the second.
 vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 {
     float mu2 = mu * mu;
@@ -80,7 +80,7 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 Q = part * S;
     vec2 q = 4.0 * Q * (1.0 - Q);
     vec2 t = sqrt(1.0 + (4.0 * k2 - 1.0) * q) + 1.0 - 2.0 * Q;
-    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // g above / cosine
+    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // sqrt(n^2 - 1 + c^2) / cosine c
     vec2 s = 1.0 / (1.0 + g);
     vec2 p = ior / max(ior * ior + g, 1e-30);
     // Rounding may make 1 - F exceed 1.
@@ -88,10 +88,9 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 }
 
 // Average of F over visible facets if ior >= 1. Near ior 1, F depends only on the cosine divided by
-// sqrt(ior^2 - 1). So below ior 1.03, the fit for ior 1.03 is used at k mu and k alpha, clamped to
-// 1, where k is the ratio of the two square roots. The fitted cosine is divided by k, or multiplied
-// by mu if k mu exceeds 1. Largest absolute error of the albedo below ior 1.03, where k alpha
-// exceeds 1: 9.3e-3.
+// sqrt(ior^2 - 1). So below ior 1.03, the fit for ior 1.03 is evaluated at k mu and k alpha, each
+// at most 1, where k is sqrt(1.03^2 - 1) / sqrt(ior^2 - 1). The resulting cosine is divided by k,
+// or multiplied by mu if k mu > 1. Largest absolute error of the albedo if k alpha > 1: 9.3e-3.
 float eonlib_fresnel_dielectric_visible(float mu, float alpha, float ior)
 {
     float k = sqrt(max(0.0609 / max((ior - 1.0) * (ior + 1.0), 1e-9), 1.0));

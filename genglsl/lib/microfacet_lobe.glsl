@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Code of the microfacet nodes: geometry, reflectances and reflection of a GGX lobe.
+// Code of microfacet nodes: geometry, reflectances and reflection of a GGX lobe.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
-// Least index of refraction. In float32, the square of a smaller index is lost next to 1, so
-// MaterialX's curve is 0 / 0 along the normal.
+// Least IOR. In float32, 1 plus the square of a smaller IOR is 1, so MaterialX's curve is 0 / 0
+// along the normal.
 #define MICROFACET_LEAST_INDEX 1e-3
 
 #define MICROFACET_MIRROR_INDEX 1e8
@@ -29,9 +29,9 @@ struct MicrofacetLobe
     int closure;
 };
 
-// Fresnel reflectances: `value` at the half vector, `average` (F_ss), cosine-weighted over the
-// hemisphere, and `visible`, over visible facets with the weight D G_2 / (4 mu_o). `outside` is a
-// factor of MaterialX's environment.
+// Fresnel reflectances. `value` is at the half vector. `average` is F_ss, the cosine-weighted
+// average over the hemisphere. `visible` is the average over visible facets with the weight D G_2 /
+// (4 mu_o). `outside` scales MaterialX's environment.
 struct MicrofacetFresnel
 {
     vec3 value;
@@ -97,7 +97,7 @@ float microfacet_lossless(MicrofacetLobe lobe)
 }
 
 // Light of an environment. MaterialX masks by the mean alpha. Under a film, facets are perfect
-// mirrors, and the caller multiplies by F.outside.
+// mirrors, and the caller applies F.outside.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     fd.ior = fd.model == FRESNEL_MODEL_DIELECTRIC ? max(fd.ior, MICROFACET_LEAST_INDEX) : fd.ior;

@@ -4,15 +4,16 @@
 #include "microfacet_film.glsl"
 
 // Light through a surface that transmits the fraction `share`. MaterialX refracts the view twice,
-// as by a solid sphere. If MaterialX renders transmission as opacity, the result is the tint.
+// as in a solid sphere. If MaterialX renders transmission as opacity, the result is the tint.
 //
-// MaterialX's squared exit cosine is 1 - n^2 (1 - q^2), where q is the cosine inside. If rounding
-// makes the square negative, 0 / 0 follows. Lengthening wo by d adds 8 d q^2 / n^2, at grazing 8e-6
-// n^2, three times the rounding of seven operations. Near n = 1 and above 4, d is too large, so n
-// is clamped to [1.001, 4]. Smooth surfaces keep n above 4, with a larger cosine.
+// MaterialX's squared cosine at the exit is 1 - n^2 (1 - q^2), where q is the cosine inside. If
+// rounding makes the square negative, NaN follows. So wo is multiplied by 1 + d, which adds 8 d q^2
+// / n^2, at grazing 8e-6 n^2, three times the rounding of seven operations. Near n = 1 and above 4,
+// d would be too large, so n is clamped to [1.001, 4]. Smooth surfaces keep n above 4 but enlarge
+// the cosine of wo.
 //
-// A Schlick curve that is F0 except at grazing makes MaterialX transmit `share`. A and B are
-// MaterialX's fits.
+// The Schlick curve is F0 except at grazing. F0 and F90 are such that MaterialX transmits `share`.
+// A and B are MaterialX's fits.
 //   sampled: (1 - F0) / G_1(mu)           prefiltered: 1 - (A F0 + B F90)
 vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData fd, vec3 share, vec3 tint)
 {
@@ -39,7 +40,7 @@ vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData f
 #endif
     fd.F82 = vec3(1.0);
     vec3 AB = mx_ggx_dir_albedo(mu, lobe.alpha, vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0));
-    fd.F90 = (1.0 - share - AB.x * fd.F0) / max(AB.y, 1e-6);  // finite if AB is 0
+    fd.F90 = (1.0 - share - AB.x * fd.F0) / max(AB.y, 1e-6);
     fd.exponent = 1e9;
     return mx_surface_transmission(lobe.N, wo, lobe.X, lobe.roughness, distribution, fd, tint);
 }
@@ -50,8 +51,7 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, bsdf);
     if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
     {
-        // Used as opacity, a lobe that only transmits passes all light, since the layer above
-        // subtracts the reflection.
+        // In mode 1, an opacity omits `passed`, since the layer above subtracts the reflection.
         vec3 passed = max(1.0 - F.visible * mix(F.average, vec3(1.0), lobe.albedo), 0.0);
         bool below = scatter_mode == 1;
         bsdf.response = microfacet_transmitted(lobe, distribution, fd, below ? passed : vec3(1.0), tint)

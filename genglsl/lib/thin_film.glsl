@@ -6,9 +6,9 @@
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
-// Section Spectral Sensitivity, Gaussians of X, X, Y and Z: mu_k in 1/m, sigma_k^2 in 1/m^2 (the
-// first is the smallest), and v_k sqrt(2 pi sigma_k^2) / 1.0685e-7. The colors in Rec. 709 are
-// adapted from white E by Bradford's method.
+// Section Spectral Sensitivity: two Gaussians for X, one for Y, one for Z. Positions are mu_k in
+// 1/m. Variances are sigma_k^2 in 1/m^2, the smallest first. Heights are v_k sqrt(2 pi sigma_k^2) /
+// 1.0685e-7. Rec. 709 is adapted from white E by Bradford's method.
 #define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 #define THIN_FILM_HEIGHTS vec4(0.84659, 0.15386831, 1.0002219, 1.0011225)
@@ -16,11 +16,11 @@
 #define THIN_FILM_COLOR_Y vec3(-1.666124, 1.9557635, -0.2145965)
 #define THIN_FILM_COLOR_Z vec3(-0.4801271, 0.0397715, 1.1509987)
 
-#define THIN_FILM_LEAST 1e-12  // least divisor, for roots of 0 and full reflection
+#define THIN_FILM_LEAST 1e-12  // least divisor, which avoids 0 / 0
 
-// The sum over orders ends if a bound of the next squared term is at most VALUE times the squared
-// mean reflectances or WIDTH times the squared width of cosines. The bound decreases by RATIO or
-// faster, so a mean of 1e-3 needs ln(VALUE 1e-6) / ln(RATIO) = 86.1 orders, at most COUNT. Source:
+// The sum ends if a bound of the next term's square is at most VALUE times the squared mean
+// reflectance or WIDTH times the squared width of cosines. Each term multiplies the bound by at
+// most RATIO. So a mean of 1e-3 needs ln(VALUE 1e-6) / ln(RATIO) = 86.1 < COUNT terms. Source:
 // tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
@@ -59,8 +59,8 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
 {
     if (fd.model == FRESNEL_MODEL_SCHLICK)
     {
-        // The sign of r_23 depends on whether the film is denser. The factor 1 - 1e-6 tolerates
-        // rounding of F0. A negative curve counts as 0.
+        // The sign of r_23 depends on whether the substrate is denser. The factor 1 - 1e-6
+        // tolerates rounding of F0. Negative values count as 0.
         float F0 = (1.0 - 1e-6) * mx_ior_to_f0(n);
         vec3 r = sqrt(max(mx_fresnel_hoffman_schlick(mu_t, fd), 0.0));
         r23_p.re = r * (2.0 * step(vec3(F0), fd.F0) - 1.0);
@@ -93,7 +93,7 @@ void thin_film_substrate(float n, float mu_t, float sin2, FresnelData fd, out Th
 }
 
 // Section Airy Summation: the DC term R_12 + R_dc is 1 + C_0. C_0 = R_dc - T_12 is computed as a
-// product, in which nothing cancels.
+// product without cancellation.
 vec3 thin_film_c0(float r21, ThinFilmComplex r23)
 {
     float R12 = r21 * r21;
@@ -107,10 +107,10 @@ vec3 thin_film_rec709(vec4 S)
     return (S.x + S.y) * THIN_FILM_COLOR_X + S.z * THIN_FILM_COLOR_Y + S.w * THIN_FILM_COLOR_Z;
 }
 
-// Section Airy Summation, higher-order terms: the sum of C_m S_m / 2 over m and both polarizations,
-// with C_m = C_0 z^m and S_m / 2 = fade^(m^2) exp(i mu_k phi m). A real z needs no sine: S_(m + 1)
-// + fade^(4 m) S_(m - 1) = fade^(2 m) Re(S_1) S_m. `spread` is the change of phi over the width. A
-// factor with spread^4, an arbitrary power, damps fast waves.
+// Section Airy Summation, higher-order terms: the sum of Re(C_m S_m) / 2 over m and polarizations,
+// where C_m = C_0 z^m and S_m / 2 = fade^(m^2) exp(i mu_k phi m). If z is real, the real parts of S
+// suffice: S_(m + 1) = fade^(2 m) (S_1 S_m - fade^(2 m) S_(m - 1)). `spread` is the change of phi
+// over the width. To damp fast waves, fade decreases with spread^4, an arbitrary power.
 vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex z_p, float phi, float spread,
                       float limit, bool is_real)
 {
@@ -125,8 +125,8 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     vec4 S_re = THIN_FILM_HEIGHTS * cosine;  // S_m / 2 times the heights
     vec4 S_im = THIN_FILM_HEIGHTS * sine;
 
-    // Bounds of the squared first term and of the squared ratio of terms. Polarization s reflects
-    // more at both interfaces, p transmits more.
+    // Squared bounds of the first term and of the ratio of terms. |z| is that of polarization s,
+    // which reflects more. C_0 is that of p, which transmits more.
     vec3 R = z_s.re * z_s.re + z_s.im * z_s.im;
     vec3 first = C0_p * C0_p * R;
     float order2 = max(first.x, max(first.y, first.z)) * fade2.x;
@@ -169,15 +169,14 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     return sum;
 }
 
-// F_airy at cosine mu, or its mean over cosines of the given width. A film index below 1 counts as
-// 1.
+// F_airy at cosine mu, averaged over nearby cosines if width > 0. A film index below 1 counts as 1.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
     // Section Three-Layer Geometry: g = n mu_t. This form of g^2 keeps all digits of a small mu.
     float n = max(fd.tf_ior, 1.0);
     float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 
-    // Section First Interface. Without a film, amplitudes r_21 are 0.
+    // Section First Interface.
     float r21_s = (g - mu) / max(g + mu, THIN_FILM_LEAST);
     float r21_p = (g - n * n * mu) / max(g + n * n * mu, THIN_FILM_LEAST);
 
@@ -190,8 +189,8 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     z_p.re *= r21_p;
     z_p.im *= r21_p;
 
-    // Section Optical Path Difference: phi = 2 pi Delta = 4 pi d g. Its derivative by mu is 4 pi d
-    // mu / g.
+    // Section Optical Path Difference: phi = 2 pi Delta = 4 pi d g, with the derivative 4 pi d mu /
+    // g by mu.
     float scale = 4.0e-9 * M_PI * fd.tf_thickness;
     float phi = scale * g;
     float spread = scale * width * mu / max(g, THIN_FILM_LEAST);

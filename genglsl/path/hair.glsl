@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hair for path tracers. The longitudinal distribution M_p of lobe p is drawn as in [dEon2013]. The
-// azimuthal distribution N_p, a logistic distribution cut at +-pi, is drawn by inversion. Both
-// describe light that the cuticle has tilted, so draws are tilted back.
+// Hair for path tracers. Inclinations are drawn from the distribution M_p of a lobe p as in
+// [dEon2013]. Azimuths are drawn by inversion of N_p, a logistic distribution cut at +-pi. Both
+// distributions describe light that the cuticle has tilted, so draws are tilted back.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"
 
-// The lobes R, TT, TRT and TRRT+ for one view. `weight` is the mean over colors. `tilt` (of light
-// by the cuticle) and `exit` (azimuth of the exit) are angles as unit complex numbers. TRRT+ is
-// uniform in azimuth.
+// The lobes R, TT, TRT and TRRT+ for one view. `weight` is the mean over colors. The angle `tilt`
+// (by which the cuticle tilts light) and the azimuth `exit` (the lobe's center) are unit complex
+// numbers.
 struct PathHair
 {
     vec4 weight;
@@ -52,9 +52,9 @@ vec2 path_hair_untilted(vec2 tilted, vec2 tilt)
     return chiang_hair_product(tilted, tilt * vec2(1.0, -1.0));
 }
 
-// Density of wi in 1/sr. The model mirrors directions that are tilted past the end of the fiber, so
-// two directions of light may have the same tilted direction. A draw chooses one of the two by the
-// cosines. If neither exists, the draw passes the end of the fiber.
+// Density of wi in 1/sr. The model mirrors inclinations tilted past the end of the fiber, so two
+// directions wi may have the same tilted direction. A draw chooses one of the two by the cosines.
+// If no wi has the tilted direction, the draw passes the end of the fiber.
 float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
 {
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
@@ -99,7 +99,7 @@ vec3 path_hair_draw(PathHair hair, vec3 wo)
     vec2 tilted = vec2(sqrt((1.0 - S) * (1.0 + S)), S);
     vec2 inclined = path_hair_untilted(tilted, hair.tilt[p]);
     vec2 folded = path_hair_untilted(tilted * vec2(-1.0, 1.0), hair.tilt[p]);
-    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if neither exists
+    float folds = max(folded.x, 0.0) / (max(inclined.x, 0.0) + max(folded.x, 1e-30));  // 0 if no cosine > 0
     bool folding = path_u.z < folds;
     inclined = folding ? folded : inclined;
     path_u.z = folding ? path_u.z / folds : (path_u.z - folds) / (1.0 - folds);

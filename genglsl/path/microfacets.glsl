@@ -18,13 +18,14 @@
 // Least alpha. Rounded directions cannot resolve narrower lobes.
 #define PATH_LEAST_ALPHA 1e-4
 
-// Least index, and least difference from index 1, where refraction does not determine the facet.
+// Least index of refraction n, and least |n - 1|. If n is 1, refraction does not determine the
+// facet.
 #define PATH_LEAST_BEND 1e-3
 
 // Least albedo in the probability of a lobe, since a fitted albedo may be 0 though facets reflect.
 #define PATH_LEAST_SHARE 1e-3
 
-// Value of path_eta for the node's ior.
+// Value of path_eta for a node's ior.
 float path_eta_of(float ior)
 {
     float n = path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior;
@@ -188,8 +189,8 @@ vec2 path_facet_draw(MicrofacetLobe lobe, bool through, bool retroreflective)
 void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData fd, MicrofacetFresnel F, vec3 tint,
                           float weight, int distribution, int scatter_mode, inout BSDF bsdf)
 {
-    // scatter_mode is 0 to reflect, 1 to transmit and 2 for both. A lobe that only transmits lies
-    // below a reflecting lobe, so it also draws reflected directions.
+    // scatter_mode is 0 to reflect, 1 to transmit and 2 for both. A lobe with mode 1 lies below a
+    // reflecting lobe, so the lobe also draws reflected directions.
     vec3 scale = tint * weight;
     vec3 factor = 1.0 + F.average * ((1.0 - lobe.albedo) / lobe.albedo);
     vec3 albedo = lobe.albedo * F.visible * factor;
@@ -198,7 +199,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     bool valued = path_asked == PATH_VALUE;
     if (path_is_denser())
     {
-        vec3 curve = vec3(1.0); // transmittance / transmittance of a dielectric
+        vec3 curve = vec3(1.0); // transmittance relative to a dielectric
         if (valued && !below)
         {
             float n = 1.0 / path_eta;
@@ -215,8 +216,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     }
     if (scatter_mode != 1)
     {
-        // For draws, the lobe below keeps its full weight, so that facets that refract wo are
-        // drawn.
+        // A draw keeps the full weight of the lobe below, so that facets that refract wo are drawn.
         bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * weight, 0.0);
         bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }

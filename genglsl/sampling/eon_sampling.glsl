@@ -11,9 +11,9 @@
 // Least cosine of a sample.
 #define EON_HORIZON (1.0 / 16777216.0)
 
-// Inverse distributions of the cosine in the parts `multiple` and `upper`. Source:
+// Coefficients of cosines drawn for the parts `multiple` and `upper`. Source:
 // tools/fits/eon_sampling.py. Domain: random numbers and their roots in [0, 1]. Largest relative
-// errors: 1.27e-5 of the density by MULTIPLE, 5.7e-6 of the density by UPPER, 1.8e-7 of y by ROOT.
+// errors: 1.27e-5 of MULTIPLE's density, 5.7e-6 of UPPER's density, 1.8e-7 of ROOT's y.
 #define EON_MULTIPLE0 -0.1221923217
 #define EON_MULTIPLE1 0.3674909842
 #define EON_MULTIPLE2 -0.5228247070
@@ -46,7 +46,7 @@ float eon_cube_gap(float mu, float S)
     return mu * (1.0 + S + S * S) / (1.0 + S);
 }
 
-// Direction with cosine mu and sine S on the side of wo. The sine of its azimuth is uniform.
+// Direction with cosine mu, sine S, x >= 0 and an azimuth whose sine is uniform in [-1, 1].
 vec3 eon_towards(float mu, float S, float u2)
 {
     return vec3(2.0 * S * sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu);
@@ -75,7 +75,7 @@ float eon_upper_quotient(float y)
 }
 
 // Part `upper`: a cosine above mu_o, drawn in proportion to S (1 - mu). y is v^(2 / 5), and y_o is
-// eon_upper_root(1 - mu_o). The quotient makes the distribution end exactly at mu_o.
+// eon_upper_root(1 - mu_o). Division by Q(y_o) makes the cosine exactly mu_o at y = 1.
 float eon_upper_cosine(float y, float mu_o, float y_o)
 {
     return 1.0 - (1.0 - mu_o) / eon_upper_quotient(y_o) * (y * eon_upper_quotient(y_o * y));
@@ -92,7 +92,7 @@ float eon_multiple_cosine(float t)
 }
 
 // Part `flat`: a direction whose projection onto the disk has a density in proportion to 1 + q x. A
-// uniform point of the disk is moved along a chord.
+// uniform point of the disk is moved parallel to x.
 vec3 eon_flat_draw(float v, float u2, float q)
 {
     vec3 wh = cosine_sample(v, u2);
@@ -102,8 +102,8 @@ vec3 eon_flat_draw(float v, float u2, float q)
     return vec3((q * (1.0 - wh.y * wh.y) + 2.0 * wh.x) / (1.0 + root), wh.y, z);
 }
 
-// Direction for wo at azimuth 0. u1 chooses a part in proportion to its integral, which is 1 for
-// `flat`. The other parts share one call of pow, which saves time on GPUs.
+// Direction for wo at azimuth 0. u1 chooses a part in proportion to the part's integral (1 for
+// `flat`). Parts except `flat` share one call of pow, which saves time on GPUs.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
     float q = roughness * S_o;

@@ -97,7 +97,7 @@ void path_end(BSDF bsdf)
     path_root = bsdf.response;
 }
 
-// Draws wi in proportion to the cosine with N. On entry, the response is the value or albedo.
+// Draws wi in proportion to the cosine with N. bsdf.response is the value or albedo on entry.
 void path_cosine(vec3 N, inout BSDF bsdf)
 {
     if (path_asked != PATH_VALUE)
