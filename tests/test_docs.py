@@ -106,7 +106,7 @@ def test_every_module_that_the_prose_names_exists():
 
 
 def test_every_generated_file_is_that_of_today():
-    """`python -m tools.site` would write the same files; last digits may depend on the machine."""
+    """The files that `python -m tools.site` writes are up to date, except for last digits."""
     number = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
     files = made()
     for path, text in files.items():

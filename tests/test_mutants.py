@@ -58,7 +58,7 @@ def test_every_source_and_every_document_of_implementations_has_mutants():
 
 
 def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_listed(gl):
-    """The listed survivors are the control: a check that always fails would detect them too."""
+    """The listed survivors are the control, which a check that always fails would detect."""
     tenth = {each.name: each for each in operators.made(1, SHARE) if not each.survives}
     tenth |= {each.name: each for each in operators.made(1, SHARE / 4.0) if each.survives}
     found = schemata.trials(list(tenth.values()))

@@ -131,7 +131,7 @@ def test_a_lobe_that_a_document_lacks_makes_no_combination_wrong_for_it():
         assert run.is_elsewhere(layer) == elsewhere
     named = replace(layer, pages=(), diagnosis=caused("defect", "throughput_of_lobes", sheen))
     assert replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(named)
-    # If a defect has no page, or its cause names no lobe, the defect counts for every document.
+    # A defect without a page, or with a cause that names no lobe, counts for every document.
     for counts in (replace(layer, pages=("genglsl_add_throughput",)), replace(layer, pages=())):
         assert not replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(counts)
 

@@ -54,7 +54,7 @@ def test_a_killed_command_leaves_its_folder_to_the_next_one(tmp_path):
     process = start(tmp_path, *CHECK)
     folder = tmp_path / "tmp"
     wait_for_results(tmp_path, process)
-    # A running command would remove its folder, so the command is stopped.
+    # Pause the command, because the command would remove its folder at the end.
     process.send_signal(signal.SIGSTOP)
     [made] = folder.glob("mxeon-pool-*")
     os.utime(made, (0, 0))  # folders younger than a minute are never deleted

@@ -34,7 +34,7 @@ def test_a_known_defect_is_named(name):
 
 
 def unfinished(wo, wi, rho, roughness):
-    """EON with two faults: NaN for light at the horizon, and infinity for red in (0.999, 1)."""
+    """EON with two faults: NaN for light at the horizon, and infinity for reds in (0.999, 1)."""
     value = eon_brdf(wo, wi, rho, roughness) * wi[:, 2:] / wi[:, 2:]
     return value + np.where((rho[:, :1] > 0.999) & (rho[:, :1] < 1.0), np.inf, 0.0)
 

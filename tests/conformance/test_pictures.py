@@ -145,7 +145,7 @@ def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown
     result, pictures, _ = shown(material(NOISE + metal))
     furnace = pictures[-1]
     assert 700 < furnace.judged.sum() < 900
-    # At a pixel that was not judged, the difference map shows the difference of judged neighbors.
+    # The difference map fills pixels that were not judged with differences of judged neighbors.
     assert np.abs(furnace.image - furnace.reference).max() > 10.0 * result.tolerance
     assert np.nanmax(furnace.difference_map()) < 3.0 * result.tolerance
 

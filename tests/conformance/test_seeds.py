@@ -18,7 +18,7 @@ NODES = ("burley_diffuse_bsdf", "conical_edf", "roughness_anisotropy")
 
 
 def verdicts(run):
-    """Verdict, and whether the wrong control was detected, by library, subject and check."""
+    """Verdict by library, subject and check, and whether the check caught a deliberate mistake."""
     found = {}
     for each in run.results:
         caught = each.control is None or each.control.caught
@@ -39,7 +39,7 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
 ):
     """The run checks a single document, because pictures use no random samples.
 
-    Checks that the fixtures do not run must pass.
+    Checks in DRAWN, which the fixtures `run` and `stock` leave out, must pass.
     """
     found = verdicts(mxeon.check(EXAMPLES[:1], ["gl"], [library], nodes=["all"], seed=seed))
     known = verdicts({"eonlib": run, "stock": stock}[library])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Graphs of surface shaders follow each sentence of their specification, or a named deviation."""
+"""A surface shader's graph follows each sentence of the specification, or a known deviation."""
 
 from functools import cache
 from pathlib import Path
@@ -49,7 +49,7 @@ def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
 
 
 def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
-    """Largest difference of `values` from the specified formula, then from each named deviation."""
+    """Largest differences of `values` from the specified formula, and from each known deviation."""
     [batch] = spec.batches(Counts())
     forms = spec.value_candidates[:-1]  # the last candidate is black
     return [float(np.abs(form.values(batch) - values).max()) for form in forms]
@@ -59,7 +59,7 @@ def distances(spec: SentenceSpec, values: np.ndarray) -> list[float]:
 def test_each_difference_from_a_text_has_a_name(spec):
     own, *others = distances(spec, shown(spec))
     if own <= SAME:
-        assert min(others, default=np.inf) > SAME  # no named deviation equals the specified formula
+        assert min(others, default=np.inf) > SAME  # no known deviation equals the specified formula
     else:
         assert min(others) <= SAME
 

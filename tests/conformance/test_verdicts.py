@@ -81,7 +81,7 @@ STOCK = {
     },
     "sheen_bsdf, mode zeltner": {
         "value": ("region", "viewer_above_1"), "transmission": ALL_LIGHT,
-        "states": ("a surface that bends: a sphere",),  # wrong only along the normal
+        "states": ("a surface that bends: a sphere",),  # wrong only for a viewer along the normal
     },
     "dielectric_bsdf, scatter_mode R": {
         **OPEN, **dict.fromkeys(("layering", "transmission", "layer", "denser"), FIT),

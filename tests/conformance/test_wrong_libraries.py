@@ -242,8 +242,8 @@ HALVED = (
     TOP.format("half")
     + '\n<input name="base" type="BSDF" nodename="metallic_mix" /></layer><multiply name="coat_half" type="BSDF"><input name="in1" type="BSDF" nodename="coat_bsdf" /><input name="in2" type="float" value="{}" /></multiply><layer name="unused" type="BSDF">'
 )
-# Changes of MaterialX: the file, the original text and its replacement, then texts that the
-# diagnosis contains: the node, the part of the node, and the wrong and the released value.
+# Changes of MaterialX. A row holds the file, the original text and the replacement. Further texts
+# must occur in the diagnosis: the node, a part of the node, the wrong value, the released value.
 CHANGED = {
     "mode of LamaConductor": (f"{BXDF}/lama/lama_conductor.mtlx", SWITCH.format("in1", "in2"), SWITCH.format("in2", "in1"), "LamaConductor", "in1 of eta_switch", "convert_ior"),
     "coat of Disney": (f"{BXDF}/disney_principled.mtlx", COAT.format("clearcoatGloss"), COAT.format("clearcoat"), "disney_principled", "in of coat_roughness", "the input clearcoat", "the input clearcoatGloss"),
@@ -286,7 +286,7 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
-    """A run also loads the release anew after more libraries than the cache holds."""
+    """If the cache no longer holds the release, a run loads the release again."""
     file, old, new, *wanted = CHANGED["alpha"]
     installed()
     read_library.cache_clear()

@@ -96,6 +96,6 @@ def show(page, **patch):
 
 
 def judged(page, side, badge):
-    """Wait until the verdict on a side, which depends on pixels read back, has the given badge."""
+    """Wait until the verdict on a side, computed from pixels, has the given badge."""
     text = "side => document.querySelector(`.side.${side} .verdict strong`).textContent"
     until(page, f"([side, badge]) => ({text})(side) === badge", [side, badge])

@@ -162,7 +162,7 @@ def test_a_white_furnace_keeps_every_exact_path(stage, sources, source):
 
 
 def test_generated_text_is_traced_like_its_model(stage, sources):
-    """A generated shader takes color and roughness from the view, in the same way as a model."""
+    """A generated shader and a model use the color and the roughness that the view sets."""
     traced(stage, side("shader/eonlib"), side(sources["eon"]), samples=256)
     text, model = (whole(stage, name)[0].mean(axis=0) for name in ("left", "right"))
     np.testing.assert_allclose(text, model, 0.01)

@@ -12,9 +12,9 @@ from tests.support.hemispheres import uniforms
 from tests.support.tolerances import FIT_ANGLE, FIT_LOSS
 
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
-# Relative error of the fits in the GLSL. A BRDF value has two factors that contain the fitted loss.
-# Full Oren-Nayar squares two fitted angles (a factor of 4), and the slopes of its other terms add 3
-# and 2.
+# Relative error of values, caused by the fits in the GLSL. A BRDF value has two factors with the
+# fitted loss. In full Oren-Nayar, two squared angles multiply the error of the fitted angle by 4.
+# The slopes of the other terms add 3 and 2 to this factor.
 VALUE = max(2 * FIT_LOSS, (4 + 3 + 2) * FIT_ANGLE)
 RHO = (0.0, 0.3, 0.8, 1.0)
 PARAMETERS = (0.0, 0.2, 0.7, 1.0)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fuzzer for forbidden effects of `mxeon`, whatever the document, the command line or the files."""
+"""Fuzzer that searches for documents, command lines and files with which `mxeon` does harm."""

@@ -137,7 +137,7 @@ RENDER = ("render", "base.mtlx", "--host", "reference", "--size", "4", "--output
 
 
 def row(count, names):
-    """Lobe colored by a chain of nodes; each node's inputs `names` use the previous node."""
+    """Lobe colored by a chain of nodes. The inputs `names` of each node read the preceding node."""
     port = '<input name="{}" type="color3" nodename="a{}"/>'
     nodes = ADD.format(0, "")
     for number in range(1, count):

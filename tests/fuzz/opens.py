@@ -3,7 +3,7 @@
 
 strace reports all files that a process opens, and Python's audit hook reports the files that mxeon
 opens. MaterialX opened all other files, which must lie in the libraries or in the documents'
-folder. In a bare run, mxeon does not check sources: this is the control, which must report
+folder. The control is a bare run, in which mxeon does not check sources. The control must report
 forbidden files.
 """
 

@@ -28,7 +28,7 @@ ElementTree.register_namespace("xi", XI)
 EVERY = Path(__file__).with_name("every.mtlx")
 POISON = "poison"
 GAP = "gap00000gap"  # placeholder that is replaced by hostile text
-# Hostile texts. BREAKING texts end a string or a line; MEANING texts matter outside strings.
+# Hostile texts. BREAKING texts end a string or a line; MEANING texts change what code means.
 BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
 MEANING = tuple(each + POISON for each in (" ", "//", "/*", "*/", *";(),=#${-"))
 MARK = re.compile(r"mark\d{5}x|77\d{5}")
@@ -98,7 +98,7 @@ def absent(root):
 
 
 def reached(root, groups, targets=TARGETS):
-    """Places whose words occur in source, with the contexts of the word: bare, quoted, comment."""
+    """Attributes whose words occur in shader source, with the contexts: bare, quoted or comment."""
     found = defaultdict(set)
     for places in groups:
         _search(root, places, targets, found)
@@ -161,7 +161,7 @@ def _judged(element, place, document, targets):
 
 
 def _search(root, places, targets, found):
-    """Mark all places at once. For targets that refuse the document, mark each half separately."""
+    """Mark all places at once. If a target refuses the marked document, mark each half alone."""
     refused = []
     text, marks = _marked(root, places)
     for target in targets:

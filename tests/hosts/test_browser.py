@@ -55,7 +55,7 @@ def test_each_defect_is_as_its_page_says(own, issue):
 
 @pytest.fixture(scope="module")
 def repaired(tmp_path_factory):
-    """Judge for each host, with all repairs of the renderer applied."""
+    """Function for each host that judges checks with the repaired renderer."""
     opened = {}
     pages = [each.page for each in measure.CHECKED if each.host == "babylon"]
     diffs = {

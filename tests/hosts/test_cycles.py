@@ -103,7 +103,7 @@ def test_tangents_point_eastward(host):
     picture = host.picture(emit("out = color(normalize(dPdu)) * emission();"), SMALL)
     expected = tangents(points.normal[points.mask])
     error = np.abs(picture[points.mask] - expected).max(axis=1)
-    # The length is 0 at the poles.
+    # Tangents before normalization have the length `across`, which is 0 at the poles.
     across = np.linalg.norm(points.normal[points.mask][:, ::2], axis=1)
     assert (error * across * points.normal[points.mask][:, 2]).max() <= 2.0 * CYCLES_NORMAL
 
@@ -167,7 +167,7 @@ def test_subsurface_keeps_its_color(host):
         pixels = host.picture(osl(text, library=library, profile=profile), scene)
         means.append(pixels[sphere(16).mask].mean(axis=0))
     assert np.abs(means[0] - color).max() < CYCLES_SUBSURFACE
-    # Stock MaterialX loses the color, so the sphere is white.
+    # Stock MaterialX ignores the color, so the sphere is white.
     assert np.abs(means[1] - 1.0).max() < CYCLES_SUBSURFACE
 
 

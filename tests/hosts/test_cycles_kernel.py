@@ -43,7 +43,7 @@ def values(tmp_path_factory):
 
     def run(*patches):
         target = tmp_path_factory.mktemp("kernel")
-        # PROGRAM itself defines what these headers define in Cycles.
+        # These headers may be empty, because PROGRAM contains their definitions.
         for name in ("types.h", "sample/mapping.h"):
             (target / "kernel" / name).parent.mkdir(parents=True, exist_ok=True)
             (target / "kernel" / name).touch()

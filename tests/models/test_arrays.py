@@ -37,7 +37,7 @@ ROWS, FEW = 48, 4
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)
-# Functions that JAX takes seconds to compile; tests cover the functions of their factors instead.
+# Functions that JAX takes seconds to compile. With JAX, only the called functions are tested.
 LONG = ("chiang_hair_bcsdf", "film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir")
 LONG += ("transmittance_dir",)
 ENDS = ("brdf", "albedo_dir", "sample", "pdf")
@@ -156,8 +156,8 @@ def pytorch():
 def jax():
     library = package("jax")
     library.config.update("jax_enable_x64", True)
-    # Optimization does not pay for a single call. The emitters of fused loops take twice as long as
-    # the rest of the compilation, and a single module compiles shared code only once.
+    # Optimization takes longer than a single call saves. XLA's emitters of fused loops take twice
+    # as long as all other steps. If modules are not split, shared code is compiled only once.
     library.config.update("jax_disable_most_optimizations", True)
     options = {"xla_cpu_use_fusion_emitters": False, "xla_cpu_parallel_codegen_split_count": 1}
     jit = partial(library.jit, compiler_options=options)
@@ -227,7 +227,7 @@ def sampled(function):
     value = arguments.call(inspect.unwrap(function), arguments.base(inspect.unwrap(function)))
     # Samplers return no colors, so their color inputs have one number per row.
     channels = 0 if isinstance(value, tuple) else np.ndim(value)
-    # Samplers of interfaces nevertheless need color channels.
+    # Samplers of interfaces are an exception, and need color channels.
     channels = channels or function.__name__.startswith(INTERFACES)
     for name in COLORS & set(arrays) if channels else ():
         if arrays[name].ndim < 2 and (name.startswith(TINTS) or "conductor" in function.__name__):

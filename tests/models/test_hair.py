@@ -100,11 +100,11 @@ def test_the_sign_of_a_tilted_cosine_has_no_effect():
 
 
 def test_the_ten_terms_of_materialx_are_off_by_2_percent():
-    # For a < 12, MaterialX's series lacks the tenth and higher powers of x^2.
+    # For x < 12, MaterialX's series of I_0(x) lacks the tenth and higher powers of x^2.
     sine, cosine, v = np.array(0.0), np.array(1.0), np.array(1.0 / 11.9)
     exact = longitudinal(sine, cosine, sine, cosine, v)
     assert materialx_longitudinal(sine, cosine, sine, cosine, v) / exact < 0.982
-    v = np.array(1.0 / 12.1)  # MaterialX's expansion for a > 12 has half of the term 1 / (8 x)
+    v = np.array(1.0 / 12.1)  # MaterialX's expansion for x > 12 has half of the term 1 / (8 x)
     short = materialx_longitudinal(sine, cosine, sine, cosine, v)
     assert short / longitudinal(sine, cosine, sine, cosine, v) == pytest.approx(0.9944, abs=1e-3)
 

@@ -8,7 +8,7 @@ from mxeon.models.core.layering import Bsdf, add, layer, mix, multiply, throughp
 # Lobes with albedo E, whose value is E and whose throughput is 1 - E. All numbers are multiples of
 # 1/64, so the sums and products below are exact.
 A, B = (Bsdf(np.array(e), throughput(e)) for e in ([0.25, 0.5, 0.0], [0.5, 0.125, 1.0]))
-TREE = 1e-13  # twice 400 roundings, in trees with 6 levels
+TREE = 1e-13  # error in trees with 6 levels: twice 400 roundings
 NOTHING, BLACK = Bsdf(np.zeros(3), np.ones(3)), Bsdf(np.zeros(3), np.zeros(3))
 
 

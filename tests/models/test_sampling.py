@@ -233,7 +233,7 @@ def multiple_error():
     mu = t * (1.0 + w**2 * (a + w**2 * (b + w * (c + w * (d + w * (e + w**4 * f))))))
     cosines = sampling.eon_multiple_cosine(t(ROOTS))
     np.testing.assert_allclose(cosines, mu(ROOTS), atol=tolerances.DIRECTION)
-    # The random number is t^3. Its derivative with respect to w is -6 w t^2.
+    # The random number is t^3 = (1 - w^2)^3, and its derivative is -6 w t^2.
     slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
     density = 2.0 * diffuse.fon_loss_mu(mu(ROOTS)) * mu(ROOTS) / (diffuse.C1 - diffuse.C2)
     return mu(ROOTS), 1.0 / (slope * density) - 1.0

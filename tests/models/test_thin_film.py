@@ -159,7 +159,7 @@ def test_wavelengths_agree_with_the_transfer_matrix_method():
 
 
 def test_the_airy_terms_of_one_wavelength_are_the_transfer_matrix():
-    # The sum of all undamped orders is a geometric series, which replaces the sensitivities.
+    # At a single wavelength, the sum of all interference orders is a geometric series.
     for index, extinction in ((1.5, 0.0), (1.1, 0.0), (0.2, 3.4), (2.9, 3.1)):
         arrays = [np.full_like(MU, value) for value in (1.4, index, extinction)]
         opd, total = formulas.path_difference(MU, 350.0, arrays[0]), 0.0

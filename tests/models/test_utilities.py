@@ -63,7 +63,7 @@ def test_a_blackbody_has_luminance_1_and_the_colors_of_a_library():
     for kelvin in (800.0, 1667.0, 4000.0, 25000.0):
         light = colour.sd_blackbody(kelvin, shape)
         xyz = np.asarray(colour.sd_to_XYZ(light, observer, method="Integration"))
-        # The two integrals have steps of 5 nm and of 1 nm.
+        # The tolerance allows for the different wavelength steps of both integrals, 5 nm and 1 nm.
         assert np.abs(blackbody_xyz(kelvin) - xyz / xyz[1]).max() < 5e-5
         assert blackbody(kelvin) @ [0.2126729, 0.7151522, 0.0721750] == pytest.approx(1, abs=1e-6)
 

@@ -490,7 +490,7 @@ RUN = Run("0.1.0", {}, (Identity("gl", "OpenGL 4.5", "llvmpipe"),), WRONG)
 
 
 def written(folder, **changes):
-    """Write the report of RUN with changed fields; return the summary of its only node."""
+    """Write the report of RUN with changed fields; return the summary of the run's node."""
     write(replace(RUN, **changes), folder)
     (entry,) = read_field([folder])
     return entry
@@ -508,7 +508,7 @@ def test_a_row_has_the_claimed_model_the_model_that_is_there_and_the_pages(tmp_p
 
 
 def test_a_node_whose_renderer_did_not_run_has_the_claim_of_this_renderer(tmp_path):
-    """EEVEE has a node with the same title that claims to be Lambert."""
+    """EEVEE's node `Diffuse BSDF`, unlike Cycles' node with this title, claims to be Lambert."""
     place = {"host": "cycles-native", "subject": "Diffuse BSDF", "claimed": ""}
     stopped = replace(WRONG[0], **place, verdict=NOT_RUN, error=None, tolerance=None, control=None)
     assert written(tmp_path, results=(stopped,)).claimed == TITLE

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents in UTF-8 are read. Other documents are refused with one line: place, rule, value."""
+"""Documents in UTF-8 are read. Errors in documents cause one line with place, rule and value."""
 
 import re
 

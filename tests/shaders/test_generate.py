@@ -112,7 +112,7 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
 
 
 def translated(source, language, folder):
-    """Errors when spirv-cross translates a pixel stage or glslang compiles the HLSL; "" if none."""
+    """Error output of the tools that translate a pixel stage or compile the HLSL, otherwise ""."""
     compiler, translator = program("glslangValidator"), program("spirv-cross")
     glsl, module, text = (folder / f"pixel.{suffix}" for suffix in ("frag", "spv", language))
     glsl.write_text(source, encoding="utf-8")

@@ -176,7 +176,7 @@ def test_generateshader_takes_the_profile_before_the_library(tmp_path):
 
 
 def test_usd_finds_the_library_by_its_plugin_search_path(monkeypatch):
-    with available("cycles"):  # Blender contains a USD with MaterialX
+    with available("cycles"):  # Blender contains USD, which loads MaterialX
         python = interpreter()
     monkeypatch.setenv("PXR_MTLX_PLUGIN_SEARCH_PATHS", OURS)
     done = subprocess.run([python, "-c", USD, *NODEDEFS], capture_output=True, text=True)

@@ -90,7 +90,7 @@ def directions(rng, count):
 
 @pytest.fixture(scope="module")
 def materials(gl):
-    """Function that compiles the material of a document by name, once."""
+    """Function that compiles the material of a named document. Each material is compiled once."""
     known = {}
     return lambda name: known.setdefault(name, paths(gl, DOCUMENTS[name]))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Skips a test if a host, program or package is missing, or fails if MXEON_REQUIRE names it.
+"""Skips tests whose host, program or package is missing. MXEON_REQUIRE can demand a failure.
 
 MXEON_REQUIRE is a comma-separated list of hosts. In this list, `packages` stands for all programs
 and Python packages. `./run test --all` sets this list to everything that the command installs.

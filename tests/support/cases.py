@@ -28,5 +28,5 @@ def pairs(count, seed):
 
 
 def parameter(row, fraction):
-    """Tuple with a fraction of the parameter's largest value; empty if there is no parameter."""
+    """Tuple with a model's parameter at a fraction of the maximum; empty without a parameter."""
     return (row.largest * fraction,) if row.parameter else ()

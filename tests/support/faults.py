@@ -43,7 +43,7 @@ def once(item):
 
 
 class Lost:
-    """A result that kills its process when the process first tries to send the result."""
+    """A result whose pickling kills the process at the first attempt and succeeds at the next."""
 
     def __init__(self, item):
         self.item = item

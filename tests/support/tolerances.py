@@ -55,9 +55,9 @@ LISTING_EPSILON = 1.34 * 1e-7 + 1e-14 / 1.6e-6
 
 # --- fits --------------------------------------------------------------------------------------
 
-# Largest relative errors of fits with their published digits, as stated next to the coefficients
-# and rounded up. EON_DENSITY is the error of the density of exact samples, which use two fits, and
-# holds for the worse fit.
+# Largest relative errors of fits, as stated next to the published coefficients and rounded up.
+# EON_DENSITY is the error of the density of exact samples, which use two fits, and holds for the
+# worse fit.
 FIT_LOSS = 2.7e-7
 FIT_LOSS_32 = 5.4e-7
 FIT_ROOT = 1.8e-7
@@ -76,9 +76,9 @@ FIT_ANGLE = 1.9e-8 + 0.6e-8
 TWIN_ALBEDO = 1e-6
 TWIN_VALUE = 2e-6
 
-# Error e of a normal in Cycles (float32). A point of the sphere is a ray's origin plus the ray's
-# length, both at most 2, with three roundings. For grazing rays the error is e / mu, so the test
-# multiplies by mu.
+# Error e of a normal in Cycles (float32). A point of the sphere is the sum of a ray's origin and a
+# vector along the ray, both of length <= 2, and has three roundings. The error is e / mu for a ray
+# at the cosine mu, so the test multiplies by mu.
 CYCLES_NORMAL = 3 * 2.0 * ROUNDING_32
 
 # Relative error of a picture of EON where both cosines exceed 0.1: 6 roundings divided by the
@@ -179,9 +179,9 @@ FRESNEL = 4.0 * (40 + FUNCTION) * ROUNDING
 # roundings, which D multiplies by 2 / alpha. The other operations have 60 roundings.
 MICROFACET = (2 * 2 / 0.05 + 60) * ROUNDING
 
-# Documented errors. CONDUCTOR and E_SS are absolute errors of a conductor's reflectance and of
-# E_ss; E_SS_SMALL applies to small roughness. SLOPES is the error of albedos summed over slopes,
-# divided by the larger of 1 and the albedo.
+# Documented errors. CONDUCTOR is the absolute error of a conductor's reflectance. E_SS is the
+# absolute error of E_ss, or E_SS_SMALL for small roughness. SLOPES is the error of albedos summed
+# over slopes, divided by the larger of 1 and the albedo.
 CONDUCTOR = 1e-12
 E_SS = 1e-10
 E_SS_SMALL = 2e-8
@@ -204,7 +204,7 @@ REVERSED = 5e-5
 
 # --- Mitsuba, float32 --------------------------------------------------------------------------
 
-# Relative error of a BTDF: 64 roundings, including the fourth power in D, divided by alpha = 0.3.
+# Relative error of a BTDF: 64 roundings, which D may amplify by 1 / alpha, where alpha is 0.3.
 MITSUBA_BTDF = 64 * ROUNDING_32 / 0.3
 
 # Errors of EON, FON and QON. MITSUBA_EVAL: the value times cosine is at most 1 / pi and has about
@@ -222,6 +222,6 @@ MITSUBA_DENSITY = 2e-7 + 3 * ROUNDING_32
 
 # Documented error of the curves of a dielectric over EON.
 COAT = 2e-7
-# Error of the integral of a dielectric over EON by 256 x 256 nodes at alpha = 0.5. The error is
-# largest in the specular lobe at mu = 0.1.
+# Error of a quadrature with 256 x 256 nodes, for the model "dielectric over EON" at alpha = 0.5.
+# The specular lobe causes the largest error, for a view at mu = 0.1.
 COAT_INTEGRAL = 2e-6
