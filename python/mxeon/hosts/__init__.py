@@ -83,8 +83,8 @@ class Row:
     nodes: Callable[[str], Sequence[Any]] | None = None
 
 
-# Pictures of a white environment are smooth, and each pixel is a sum over many directions, so these
-# pictures have half the usual width.
+# Pictures of a white environment take long, because each pixel is a sum over many directions. The
+# pictures are smooth, so half the usual width is enough.
 WHITE_LIGHT = replace(FURNACE, size=128)
 
 HOSTS = (
@@ -166,7 +166,7 @@ def open_host(name: str, *additional: Row) -> Host:
     raise Unsupported(f"{name}: this renderer only has its own materials; gl renders MaterialX's")
 
 
-# Ids of the processes that opened an engine: this process, or ancestors of this process.
+# Ids of the processes that opened an engine. A forked process has a copy of its parent's ids.
 _OPENED: set[int] = set()
 
 

@@ -58,7 +58,7 @@ class Engine(ABC):
 
     name: str
     draws_images: ClassVar[bool] = False  # whether an environment may be an image
-    # Default choice of methods for shader generation; UNCHOSEN if the engine offers no choice.
+    # Default methods of shader generation, or UNCHOSEN if the engine has no such methods.
     default: ClassVar[Methods] = UNCHOSEN
     methods: Methods = UNCHOSEN  # methods that are chosen for all shaders
 

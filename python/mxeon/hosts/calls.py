@@ -73,7 +73,7 @@ CLOSURES = {
 }
 EMISSION = "CLOSURE_TYPE_EMISSION"  # closure type that evaluates EDFs, in every branch
 GRAPH = "graph"  # branch whose value is the color of the uniform EDF
-LIT = "lit"  # branch that sums several lights and an environment on both sides in one pixel
+LIT = "lit"  # branch that sums lights, the reflected environment and the transmitted environment
 # Inputs of the branch LIT: number of lights (up to 2), direction of the second light in world
 # space, and whether there is an environment.
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
@@ -205,7 +205,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     statements, ports = _main(text), _ports(shader)
     words = _words(statements + color[1])
     arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", NO_POSITION)}
-    # Inputs of these types stay uniforms.
+    # Inputs of these types stay uniforms, and are not replaced by variables.
     unset = (*FILES, "color4", "vector4", "matrix33", "matrix44")
     names = [name for name in words if name in ports and ports[name].type not in unset]
     arguments |= {name: _argument(name, ports, inputs) for name in names} | _placed(words)
@@ -235,7 +235,7 @@ def _words(text: str) -> list[str]:
 
 
 def _ports(shader: Shader) -> dict[str, Input]:
-    """Inputs of a shader by name. An input that the text converts to a boolean is a boolean."""
+    """Inputs of a shader by name. Integers that WGSL converts to booleans get the type boolean."""
     ports = {port.name: port for port in shader.inputs}
     for name in booleans(shader.stages["pixel"]):
         if name in ports:
@@ -250,7 +250,7 @@ def booleans(text: str) -> list[str]:
 
 
 def _argument(name: str, ports: Mapping[str, Input], inputs: Inputs) -> tuple[str, ArrayLike]:
-    """Type and value of a BSDF's argument, an input of the shader or an axis of the surface."""
+    """Type and value of a BSDF's argument, which is a shader input or an axis of the surface."""
     port = ports.get(name)
     if port is None:
         normal, tangent = inputs.get("normal", NORMAL), inputs.get("tangent", TANGENT)

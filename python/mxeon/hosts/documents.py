@@ -28,8 +28,8 @@ from mxeon.shaders.scene import Scene, sphere
 
 SPREAD = 1.0 / 64.0  # factor that reduces the change of texture coordinates in a quad
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-# Least cosine between normal and view in the slope of a quad. Nearer to the rim, a tangent plane
-# would leave the frame.
+# Lower bound of the cosine of normal and view in the slope of a quad. A tangent plane at the rim
+# would be so steep that the quad would leave the frame.
 STEEPEST = 0.05
 
 
@@ -44,7 +44,7 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]
-    # Corners of the quad relative to the exact point, raised into the tangent plane.
+    # Offsets of corners from the exact point in x and y, and in z along the tangent plane.
     offset = np.broadcast_to((CORNERS - place) / size, (len(normal), 4, 2))
     rise = -(normal[..., :2] * offset).sum(axis=-1) / np.maximum(normal[..., 2], STEEPEST)
     position = normal + np.concatenate([offset, rise[..., np.newaxis]], axis=-1)
@@ -65,8 +65,8 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     }
 
 
-# Two values for materials that need 2 x 2 blocks of pixels in the same triangle. A quad is then
-# PIXEL_BLOCK pixels wide, and the pixel that is read lies right of the diagonal, below the center.
+# Width of a quad in pixels, and position in the quad of the pixel that is read, for materials that
+# need 2 x 2 pixels in one triangle. The pixel lies right of the diagonal, below the center.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
 PICTURES = 64  # maximum number of cached pictures, which the checks of a node share
 

@@ -41,8 +41,8 @@ LAYER = (
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}
 WIDTH = 1024  # maximum number of pixels in a row of a frame
 PART = 1 << 15  # maximum number of elements that one frame evaluates
-# Number of columns and rows that make the sizes of argument textures odd. Mesa would compile a
-# program again whenever a size changed from a power of two to another number, or back.
+# Columns and rows that are added to argument textures, whose sizes are then odd. Mesa would compile
+# a program again whenever a size changed from a power of two to another number, or back.
 ODD = 1
 
 Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers of rows

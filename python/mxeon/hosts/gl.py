@@ -163,8 +163,8 @@ class GlHost(FragmentHost):
     ) -> Array:
         """Float32 pixels (height, width, 3) of a frame or its parts, row 0 at the bottom."""
         frame, triangle = self._begin(program, textures, size)
-        # Unless a component is masked, Mesa compiles a program twice: for tiles that are covered
-        # entirely and for other tiles.
+        # Mesa would compile a program for entirely covered tiles and again for other tiles. Masking
+        # a color component avoids the second compilation.
         frame.color_mask = True, True, True, False
         for part in parts or [(0, 0, *size)]:
             frame.scissor = part

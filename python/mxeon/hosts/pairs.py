@@ -49,7 +49,7 @@ class PairHost(base.Host):
                     f"{self.name}: the sine of each pair must be at least {LEAST_SINE}"
                 )
             return self._pixels(shader, wo, wi, inputs, "", LAMP)
-        # Emission and light of the sky do not depend on wi, so wi is any vector normal to wo.
+        # Results for emission and for a sky do not depend on wi, so wi is any vector normal to wo.
         # A mean over several pixels reduces the noise under a sky.
         sky = not through and branch != EMITTED
         repeats = max(1, PATHS // len(wo)) if sky else 1
@@ -78,7 +78,7 @@ Vectors = NDArray[np.float64]
 # Least sine of the angle between wo and wi. If the sine is smaller, the light is in view or the
 # point is behind the camera.
 LEAST_SINE = 0.08
-FARTHER = 1.001 * LEAST_SINE  # a larger sine, to allow for rounding
+FARTHER = 1.001 * LEAST_SINE  # sine for turned directions, above LEAST_SINE even if rounded
 NO_SINE = 1e-6  # largest sine of directions that are equal up to the rounding of float32
 CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # an equilateral triangle
 

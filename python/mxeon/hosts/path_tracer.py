@@ -24,7 +24,7 @@ HEAD = "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"
 
 
 def by_light(sky: Array) -> tuple[Array, Array]:
-    """256 x 256 indices of texels, repeated in proportion to light, and each probability."""
+    """Indices of texels (256 x 256), repeated in proportion to light, and texels' probabilities."""
     rows, columns, _ = sky.shape
     across = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, np.newaxis]
     share = np.cumsum(sky.mean(axis=-1) * across + 1e-6)

@@ -37,7 +37,7 @@ WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 # several numbers are in docs/hosts.md. Only the first mipmap of the environment is read.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE_DIRECTIONS = 256
-DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # one direction, because the sums are 0
+DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # 1 is enough without an environment
 TRIANGLE = {  # attributes of a triangle's three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
@@ -115,7 +115,7 @@ def light(scene: Scene, directions: int = PICTURE_DIRECTIONS) -> Uniforms:
     values |= DARK
     if scene.environment is not None or client.radiance is not None:
         values["u_envRadianceSamples"] = directions
-    if isinstance(scene.environment, Path):  # mipmaps keep 256 samples from leaving a pattern
+    if isinstance(scene.environment, Path):  # mipmaps avoid a visible pattern of samples
         values["u_envRadianceMips"] = int(np.log2(max(read_latlong(scene.environment).shape))) + 1
     lamps = client.lamps
     if scene.light is not None:

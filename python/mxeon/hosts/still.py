@@ -131,9 +131,9 @@ def floor(scene: Scene) -> Array:
 
 
 def lights(scene: Scene) -> tuple[Floats, Floats]:
-    """Directions that represent an environment, and the contribution of each direction.
+    """Directions that represent an environment, and each direction's radiance times solid angle.
 
-    Directions are in the foot's frame. Contributions are radiance times solid angle, (DRAWN, 3).
+    Directions are in the frame of the shader ball's foot. The shape of each array is (DRAWN, 3).
     """
     sky = reduced(read_latlong(scene.environment))
     if sky.shape[:2] == (1, 1):

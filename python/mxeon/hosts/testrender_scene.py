@@ -88,7 +88,7 @@ class PairScene(TurnedPairs):
         across = unit(np.cross(toward, self.rays))  # the normal faces the camera
         reach = TRIANGLE * np.linalg.norm(self.points - [0.0, 0.0, EYE], axis=1)
         axes = np.stack([toward, across], axis=1) * reach[:, np.newaxis, np.newaxis]
-        # All points of a triangle read the same pixel of an image.
+        # Corners share texture coordinates, so the whole triangle reads one pixel of an image.
         column, row = np.arange(len(self.rays)) % self.size, np.arange(len(self.rays)) // self.size
         places = (np.stack([column, row], axis=1) + 0.5) / self.size
         corners = self.points[:, np.newaxis] + np.array(CORNERS) @ axes

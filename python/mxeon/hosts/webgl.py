@@ -230,7 +230,7 @@ def program(host: str = "webgl") -> str:
 def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:
     """Write each array once, and return shapes and offsets in the file by group and name."""
     layout: dict[str, Layout] = {}
-    places: dict[int, object] = {}  # shape and offset of each written array, by identity
+    places: dict[int, object] = {}  # shape and offset of each written array; keys: id(array)
     offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():

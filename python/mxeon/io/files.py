@@ -138,7 +138,7 @@ def replacing(path: AnyPath) -> Iterator[Path]:
 
 @contextmanager
 def naming(path: AnyPath) -> Iterator[None]:
-    """Let system errors in the block name `path` instead of a temporary file or no file."""
+    """Replace the file name, such as a temporary name, in the block's system errors by `path`."""
     try:
         yield
     except OSError as error:

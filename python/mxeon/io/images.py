@@ -79,7 +79,7 @@ def difference_scale(difference_map: ArrayLike) -> float:
     positive = difference_map[np.isfinite(difference_map) & (difference_map > 0.0)]
     percentile = max(np.quantile(positive, 0.99) if positive.size else 0.0, 1e-9)
     decade = int(np.floor(np.log10(percentile)))
-    # Decimal numbers are parsed, because the last digits of products would differ.
+    # Steps are parsed from text, because products with powers of ten have rounding errors.
     steps = [float(f"{digit}e{decade}") for digit in (1, 2, 5, 10)]
     return next((step for step in steps if percentile <= step), steps[-1])
 

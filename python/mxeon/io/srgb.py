@@ -44,8 +44,8 @@ def srgb_encoded(image: ArrayLike) -> Codes:
     finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
     linear = np.clip(image, np.float32(0.0), np.float32(1.0))
     linear[~finite] = 0.0
-    # The code is the least code of the step, plus 1 for a value above the threshold of the least
-    # code. The mode "clip" avoids checks of bounds.
+    # A value has the least code of a step, or 1 more if the value reaches the end of that code.
+    # The mode "clip" avoids checks of bounds.
     thresholds, least = _codes()
     codes: Codes = least.take((linear * np.float32(STEPS)).astype(np.intp), mode="clip")
     codes += linear >= thresholds.take(codes, mode="clip")
@@ -55,10 +55,9 @@ def srgb_encoded(image: ArrayLike) -> Codes:
 
 @cache
 def _codes() -> tuple[NDArray[np.float32], Codes]:
-    """The linear value at which each sRGB code ends, and the least code of each of STEPS steps.
+    """The linear value at which each sRGB code ends, and the least code in each of STEPS steps.
 
-    No step contains two of these ends, because even at 0, where ends are closest, the slope of the
-    curve is only 12.92.
+    No step contains two ends, because ends are at least 1 / (255 * 12.92) = 2.5 / STEPS apart.
     """
     ends = srgb_decoded((np.arange(255) + 0.5) / 255.0).astype(np.float32)
     least = np.searchsorted(

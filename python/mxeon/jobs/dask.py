@@ -216,7 +216,7 @@ def _progress(
         error = future.exception(timeout=FETCH)
         if error is None:
             return Outcome(future.result(timeout=FETCH)), None
-    except TimeoutError:  # the worker and the result are lost: wait again
+    except TimeoutError:  # the worker is lost with the result, so wait again
         return None, None
     if isinstance(error, WorkerUnavailable):
         tried = task.tried | {error.worker}

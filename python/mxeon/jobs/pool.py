@@ -96,7 +96,7 @@ ATTEMPTS = 2
 BREAKS = 3  # maximum number of pools that break in succession without finishing an item
 START = 60.0  # maximum seconds until a process begins to work
 LOCK = 10.0  # seconds until workers take over the lock of a killed worker
-LAST = 4  # minimum number of waiting tasks per worker for scheduling a task ahead
+LAST = 4  # waiting tasks per worker above which each worker gets a second task
 LAST_LINES = 4  # maximum number of lines quoted from a worker's output
 
 
@@ -164,7 +164,7 @@ def in_order(outcomes: Iterable[tuple[int, Outcome]]) -> Iterator[Outcome]:
 def _serve(
     work: Callable[[Any], Any], waiting: Queue, workers: int, timeout: float, logs: str
 ) -> Iterator[tuple[int, Outcome]]:
-    """Yield outcomes until no item waits or a pool breaks. Unfinished items then wait again.
+    """Yield outcomes until no item waits or a pool breaks. Unfinished items go back to `waiting`.
 
     Each worker is a pool with one process, so that items can be assigned to a worker.
     """
@@ -183,7 +183,7 @@ def _serve(
                     own[future] = attempt
             begun = dict(pair for own in running for pair in own.items())
             done = wait(begun, timeout=START + timeout, return_when=FIRST_COMPLETED).done
-            for ended in done or begun:  # if none is done, the processes hang before work begins
+            for ended in done or begun:  # if no task ends, processes hang at the start
                 attempt = begun[ended]
                 for own in running:
                     own.pop(ended, None)
@@ -226,7 +226,7 @@ def _start(pool: ProcessPool) -> bool:
 def _again(future: Future[Any], attempt: Attempt, outcome: Outcome) -> Attempt | None:
     """The next attempt at an item, or None if there is no further attempt.
 
-    If a pool breaks, the task that was running is unknown, so that the attempt is not counted.
+    If a pool breaks, it is unknown which task was running, so the attempt is not counted.
     """
     if future.done() and isinstance(future.exception(), BrokenProcessPool):
         return attempt

@@ -104,8 +104,8 @@ def check_kit(
             f"{folder / RENDERS}: none of the {len(needed)} pictures is there: make them as "
             f"{folder / 'README.md'} describes"
         )
-    # Questions are answered in order, because a wrong light or encoding makes models
-    # indistinguishable. So a wrong setup prevents all other answers.
+    # The question about light and encoding comes first. If the setup is wrong, models are
+    # indistinguishable, and the other questions are not answered.
     notes, obstacle = [], NO_DIAGNOSIS
     for question in progress(posed):
         result, found = answer(question, needed, images, depth, place, obstacle)

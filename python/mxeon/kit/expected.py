@@ -51,7 +51,7 @@ def expected(row: Model, view: View, depth: float) -> Expected:
     place = _centers(view)
     value = pixel_means(row, view)
     center = _values(row, view, place)
-    # A point of a triangle has the normal of a point of the sphere that is farther from the axis.
+    # The normal at a point of the mesh is the sphere's normal at a point farther from the axis.
     mesh = _values(row, view, place / (1.0 - depth))
     slack = np.abs(value - center) + np.abs(mesh - center) + HALF_ROUNDING * value + HALF_STEP
     return Expected(value, slack + (INTERPOLATION if view.scene.light is None else 0.0))

@@ -43,8 +43,8 @@ def tiles(error: NDArray[np.float64], slack: NDArray[np.float64], mask: NDArray[
     contrast = (square @ [1.0, -1.0, -1.0, 1.0]) / 2.0
     count = _sum(complete)
     judged = count[:, 0] >= FEWEST
-    # Each quantity is averaged over a tile. A contrast contains only noise, because the weights of
-    # a contrast sum to 0.
+    # Errors, squared contrasts and slack are averaged over a tile. Smooth errors cancel in a
+    # contrast, because the weights of the four pixels sum to 0.
     parts = square.mean(axis=-1), contrast**2, slack.mean(axis=-1)
     mean, variance, slack = (_sum(complete * each)[judged] / count[judged] for each in parts)
     deviation = np.sqrt(variance / (4.0 * count[judged]))

@@ -33,8 +33,8 @@ from mxeon.kit.views import (
 from mxeon.models import table as reference
 from mxeon.shaders.nodes import FLAG
 
-# Models that noise makes indistinguishable. EON's quartic approximation differs from EON by at most
-# 1e-3.
+# Models that noise makes indistinguishable from other models. EON's quartic approximation differs
+# from EON by at most 1e-3.
 TOO_NEAR = ("eon_approx",)
 Images: TypeAlias = Mapping[str, NDArray[np.float64]]  # usable pictures by name of the view
 
@@ -67,7 +67,7 @@ FAULTS = (
 def fault(
     name: str, image: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> results.Diagnosis:
-    """Find the fault that turns the model into the picture `name`, or a known symptom."""
+    """The fault that explains the picture `name`, or a symptom such as a clipped picture."""
 
     def found(key: str, *factors: float) -> results.Diagnosis:
         cause = results.Cause(results.Kind.DEFECT, f"picture_{key}", (name,), factors)
@@ -91,7 +91,7 @@ def fault(
 def _fit(
     values: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> tuple[float, float]:
-    """Best factor between values and model, and the relative error beyond noise, or infinity."""
+    """Factor that makes the model fit best, and relative rms error minus noise (or infinity)."""
     if not np.isfinite(values).all() or (values * model.value).sum() <= 0.0:
         return 0.0, np.inf
     factor = (values * model.value).sum() / (model.value**2).sum()
@@ -119,7 +119,7 @@ def candidates(views: Sequence[View], images: Images, depth: float) -> list[Mode
     rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(view.scene.light for view in views):
-        # Of models that differ only in the albedo, only the last is kept.
+        # Models that differ only in the albedo are equal here. The last model is kept.
         rows = tuple({row.brdf_of: row for row in rows}.values())
     ranking = []
     for row in rows:
@@ -128,8 +128,8 @@ def candidates(views: Sequence[View], images: Images, depth: float) -> list[Mode
         ranking.append(ModelDistance(row.title, rms, ratio(errors)))
     distinct: dict[float, ModelDistance] = {}
     for each in sorted(ranking, key=lambda model: model.distance):
-        # At roughness 1, a model of roughness equals a model of squared roughness. The first is
-        # kept.
+        # At roughness 1, a variant that squares the roughness equals the original model. Whichever
+        # comes first in the table is kept.
         distinct.setdefault(each.distance, each)
     return list(distinct.values())
 

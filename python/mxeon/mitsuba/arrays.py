@@ -6,7 +6,7 @@ axis. Dr.Jit can evaluate the formulas of `mxeon.models` because of the standard
 
 A curve over (0, 1] is tabulated as a cubic in each of 16 equal parts of each octave. The index of a
 part is computed from the bits of a float32, without a logarithm. Octaves resolve a curve at any
-scale, which the albedo of facets needs because of a dependence on cosine / alpha.
+scale. The albedo of facets depends on cosine / alpha, so the scale is small if alpha is small.
 """
 
 from __future__ import annotations

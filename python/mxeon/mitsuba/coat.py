@@ -144,20 +144,20 @@ class CoatPlugin(EonPlugin):
         return self.dr.maximum(missing, 0.0), self.dr.clip(reflected, 0.0, 1.0)
 
     def _curves(self, mu: Mitsuba) -> list[Mitsuba]:
-        """Curves of the interface at mu, from the table or (in scalar variants) from polynomials."""
+        """Values of the interface's curves at mu. Scalar variants do not use the table."""
         if not self._compiled:
             return list(self.coat.at(mu))
         cell, x = octave_cells(mu)
         return [gather_cubic(self.table, self.count * cell + k, x) for k in range(self.count)]
 
     def _rows(self, values: list[float]) -> Array:
-        """Table of the curves in the order of the cells, followed by the means of a varnish."""
+        """Cubics of all curves, cell by cell. A varnish appends the `means` of the interface."""
         coat = self.interface(*values)
         rows = [octave_cubics(partial(_curve, coat, k)) for k in range(self.count)]
         return np.append(np.stack(rows, axis=1), getattr(coat, "means", ()))
 
     def _slopes(self, values: list[float], k: int) -> Array:
-        """Derivatives of the table by parameter `k`, by finite differences inside the valid range."""
+        """Derivatives of the table with respect to parameter `k`, by steps in the valid range."""
         low, high = (ALPHAS, IORS)[k]
         ends = min(values[k] + STEP, high), max(values[k] - STEP, low)
         upper, lower = (self._rows([*values[:k], end, *values[k + 1 :]]) for end in ends)
@@ -167,7 +167,7 @@ class CoatPlugin(EonPlugin):
         return self._clamped("alpha"), self._clamped("alpha")
 
     def _clamped(self, name: str) -> Mitsuba:
-        """The parameter, clamped to the valid range, which an optimizer may have left."""
+        """The parameter, clamped because an optimizer may have moved it out of the valid range."""
         return self.dr.clip(getattr(self, name), *self.numbers[name][1:])
 
     def _vector(self, w: Mitsuba) -> Mitsuba:

@@ -139,11 +139,11 @@ class RoughDiffusePlugin:
         return self.mi.Bool(active) & enabled & (view.z > 0.0) & (light.z > 0.0)
 
     def _clipped(self, amount: Mitsuba) -> Mitsuba:
-        """The parameter, clamped to the valid range, which an optimizer may have left."""
+        """The parameter, clamped because an optimizer may have moved it out of the valid range."""
         return self.dr.clip(amount, 0.0, self.largest)
 
     def _gray(self, si: Mitsuba, active: Mitsuba) -> tuple[Mitsuba, Mitsuba]:
-        """Mean of the reflectance's channels, for which samples are exact, and the parameter."""
+        """Mean of the reflectance's channels, and the parameter, for drawing samples."""
         rho = self.dr.mean(self.reflectance.eval(si, active))
         return self.dr.clip(rho, 0.0, 1.0), self._clipped(self.amount.eval_1(si, active))
 
@@ -203,7 +203,7 @@ class EonPlugin(RoughDiffusePlugin):
         mu_upper = number(sampling.eon_upper_cosine(v**0.4, mu_o, limit))
         mu_multiple = number(sampling.eon_multiple_cosine(dr.cbrt(v)))
         mu = dr.select(is_lower, mu_lower, dr.select(is_toward, mu_upper, mu_multiple))
-        # Directions of the lower and upper parts are on wo's side, and directions of the multiple
+        # Directions of EON's lower and upper parts are on wo's side. Directions of the multiple
         # part have a uniform azimuth.
         S, (sine, cosine) = dr.safe_sqrt((1.0 - mu) * (1.0 + mu)), dr.sincos(2.0 * dr.pi * u2)
         ahead = dr.select(is_toward, 2.0 * dr.safe_sqrt(u2 * (1.0 - u2)), cosine)
@@ -214,8 +214,7 @@ class EonPlugin(RoughDiffusePlugin):
             dr.select(is_flat, number(each), other)
             for each, other in zip(point, (S * ahead, S * aside, mu), strict=True)
         )
-        # In the frame used so far, wo is in the xz-plane. The direction is rotated to the local
-        # frame.
+        # The direction is rotated to the local frame from a frame in whose xz-plane wo lies.
         length = dr.select(S_o > 0.0, S_o, 1.0)
         c, s = dr.select(S_o > 0.0, view.x / length, 1.0), view.y / length
         return self.mi.Vector3f(c * x - s * y, s * x + c * y, z)

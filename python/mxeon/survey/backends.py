@@ -23,7 +23,7 @@ from mxeon.shaders.scene import FURNACE, Scene, sphere
 from mxeon.survey.facets import facet_points
 from mxeon.survey.specs import Material, RendererSpec
 
-FACET_PIXELS = 7169  # number of pixels that lie within one facet in a picture of the polyhedron
+FACET_PIXELS = 7169  # number of a picture's pixels that each lie within a single facet
 FEW_CALLS = samples.Counts(1 << 13)  # number of calls of a renderer's function
 SHORTEST = 2.0**-10  # least |wo + wi| of special pairs, since Fresnel formulas square cosines
 EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark and bright colors, from rough to smooth
@@ -33,7 +33,7 @@ EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark and bright colors, from rou
     {"color": (0.8, 0.4, 0.1), "roughness": 0.5},
     {"color": (0.5, 0.2, 1.0), "roughness": 0.1},
 )
-# EEVEE stores the three channels of light in 32 bits, of which blue has the fewest.
+# EEVEE stores three channels of light in 32 bits. The blue channel has the fewest bits.
 COARSE_FACETS = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     Term(2.0**-6, "five bits below the leading one, cut off"),
@@ -104,7 +104,7 @@ class Exact(Native):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """Pictures for a control, which needs only the first material."""
+        """Pictures for a negative control, for which the first material is enough."""
         return self.batches[:: len(EXACT_INPUTS)]
 
     @property

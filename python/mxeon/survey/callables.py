@@ -86,7 +86,7 @@ class Function(backends.Backend):
         return Batch(wo, wi, {"color": rho, "roughness": roughness})
 
     def direct(self, batch: Batch) -> Array:
-        """Values of pi f cos(theta_i), (N, 3). If one channel is not finite, all are NaN."""
+        """Values of pi f cos(theta_i), (N, 3). If a channel is not finite, all channels are NaN."""
 
         def evaluated() -> Array:
             values = np.asarray(self.host.brdf(*_arguments(batch)), np.float64)

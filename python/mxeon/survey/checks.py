@@ -19,7 +19,7 @@ from mxeon.survey.specs import RendererSpec
 
 # A correct sampler exceeds this limit in one of 3.5 million runs.
 CHI_SQUARE = single(5.0, Quantity.DEVIATIONS, "five standard deviations")
-# The density has the fourth power of the length of a transformed direction, which costs three bits.
+# The density contains the fourth power of a vector's length, which costs three bits of precision.
 OWN_DENSITY = sum_of(
     roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY
 )

@@ -173,7 +173,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
                 for column, keys in CHECKS.items()
                 if any(key in results for key in keys)
             }
-            # The tolerance for direct light judges the largest error of the back-lit portrait.
+            # The back-lit portrait passes if its error is within the tolerance for direct light.
             if BACK in portraits and direct.tolerance is not None:
                 error, allowed = portraits[BACK].difference, direct.tolerance
                 verdict: Verdict = PASSED if error <= allowed else FAILED

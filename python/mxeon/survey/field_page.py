@@ -30,7 +30,7 @@ HEADINGS = {
     "back": ("Back-lit", "worst error of the portrait in light from behind"),
 }
 SCENES = {"side": "light from the side", "back": "light from behind"}
-# Row, entry, image, difference map, scale of the map, and largest difference.
+# Row number, entry, image, difference map, scale of the difference map, and largest difference.
 Frame: TypeAlias = tuple[int, Entry, str, str, float, float]
 INPUTS = ("color", "roughness", "wo", "wi", "measured", "expected")
 
@@ -45,7 +45,7 @@ def write_field(entries: Sequence[Entry], file: str | PathLike[str]) -> Path:
 
 
 def frames(entries: Sequence[Entry], scene: str) -> Iterator[Frame]:
-    """Read the portraits of a scene. Errors within the tolerance are dark in difference maps."""
+    """Images and difference maps of a scene's portraits. Small errors are dark in maps."""
     for row, entry in enumerate(entries):
         portrait = entry.portraits.get(scene)
         if portrait is None:

@@ -37,11 +37,11 @@ class RendererSpec(DiffuseModelSpec):
         return diffuse_model((*self.forms, self.model)[0]).title
 
     def of_model(self, model: str) -> Self:
-        """The same node, judged as another model."""
+        """A copy of this node that is judged as another model."""
         return replace(self, model=model, row=_row(model, self.node))
 
     def document(self, inputs: Values | None = None) -> str:
-        """An empty text, because these nodes have no document."""
+        """An empty text, because a renderer's built-in node has no document."""
         return ""
 
     def made(self, color: Sequence[float], roughness: float) -> Material:

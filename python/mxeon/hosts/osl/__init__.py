@@ -77,7 +77,7 @@ class OslHost(base.Host):
         """
         text, columns = shader.stages["pixel"], points.columns_of(shader, inputs)
         view = Column("vector", wo)
-        # Closures never depend on the light, and rarely on the view, so checks repeat points.
+        # Points of a check repeat, because closures never depend on wi and rarely depend on wo.
         read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
         values = [np.broadcast_to(each.rows, (len(wo), each.rows.shape[1])) for each in read]
         keys = [row.tobytes() for row in np.concatenate(values, axis=1)]

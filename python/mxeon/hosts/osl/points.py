@@ -171,7 +171,7 @@ def indented(lines: Iterable[str]) -> str:
 
 
 def with_header(text: str, shader: Shader) -> str:
-    """A generated text with the full path of the file that the text includes."""
+    """Generated OSL, in which mx_funcs.h is included by its full path."""
     path = mx.FileSearchPath(shader.root) if shader.root else mx.getDefaultDataSearchPath()
     header = path.find("libraries/stdlib/genosl/include/mx_funcs.h").asString()
     return text.replace('"mx_funcs.h"', f'"{header}"')

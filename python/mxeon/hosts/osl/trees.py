@@ -77,7 +77,7 @@ def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
 
 
 def _tree(label: Any, numbers: Array) -> ClosureTree | None:
-    """Tree of a label, in which a number is the index of a column of `numbers`."""
+    """Tree of a label. Each number in the label is the index of a column of `numbers`."""
     if label is None:
         return None
     name, *values = label

@@ -36,7 +36,7 @@ class StormHost(DocumentHost):
     default, fixed = STORM, True
 
     def transmitted(self, shader: Shader, size: int) -> Array:
-        """Fraction of a white card's light that passes the sphere, by pixel, row 0 at the top."""
+        """Fraction of a white card's light that the sphere transmits. Row 0 is at the top."""
         dark = Scene("dark", size=size)
         return np.asarray(self._shown(shader, dark, card=True) - self._shown(shader, dark))
 
