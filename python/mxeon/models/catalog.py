@@ -85,11 +85,11 @@ NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
     "generalized_schlick": "schlick",
-    # The rows are reversed, so that the first mode of a node overwrites the node's later modes.
+    # In reversed order, the first mode of a node comes last and so overwrites the other modes.
     **{row.category: row.name for row in reversed((*PBR_NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
-# Other names of models. A message about an unknown name uses them to suggest a model.
+# Other names of models. Messages about an unknown name use these names to suggest a model.
 ALSO = {
     **dict.fromkeys(("dielectric", "conductor", "schlick"), "ggx"),
     "burley": "disney",
@@ -195,8 +195,8 @@ def _coated_model(name: str, title: str) -> ShadingModel:
 
 
 def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
-    """Result of a function of `mxeon.models.coat`, called once for each different coat."""
-    # For arrays other than NumPy's, the function is called once and rejects more than one coat.
+    """Result of a function of `mxeon.models.coat`; one call for each pair of alpha and ior."""
+    # With another array library, the only call raises an error for several pairs of alpha and ior.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))

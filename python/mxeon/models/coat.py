@@ -110,7 +110,7 @@ class Coat:
     reflected: list[float] | Array
 
     def at(self, mu: Array) -> tuple[Array, Array]:
-        """Values of (1 - E_ss) / E_ss and E_r at a cosine, clamped to at least 0 and to [0, 1]."""
+        """(1 - E_ss) / E_ss, clamped to at least 0, and E_r, clamped to [0, 1], at a cosine."""
         x = scaled_cosine(mu, self.alpha)
         missing, reflected = (
             arrays.at_least_0(chebyshev_sum(cast(Array, each), x))
@@ -243,9 +243,9 @@ def dielectric_over_eon_albedo_avg(
 def mixed_sample(
     wo: ArrayLike, u: ArrayLike, alpha: float, share: Array, base: Callable[[Array], Array]
 ) -> Array:
-    """Direction that is reflected by a facet with probability `share`, and else sampled by `base`.
+    """Direction that a facet reflects, with probability `share`, or else that `base` samples.
 
-    The first random number makes this choice and is then rescaled to [0, 1).
+    The first random number chooses between facet and `base`, and is then rescaled to [0, 1).
     """
     xp = array_namespace(share)
     u1, u2 = unpack_uniforms(u)
@@ -394,7 +394,7 @@ def refracted_cosine(mu: Array, ior: float | Array) -> Array:
 
 
 def mean_parts(mu: Array, b: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
-    """The terms mu', 1 + r b(mu) and H(mu') of k.
+    """Three terms of k: mu', 1 + r b(mu) and H(mu').
 
     - `b`: The field `b` of `Curves`, which is b(mu) mu' / S'.
     """
@@ -472,9 +472,9 @@ def integral_matrices() -> tuple[Array, Array, Array, Array]:
     """Points x, the derivatives dx/dy at these points, and two matrices of integrals over y.
 
     The points are x = 1 - (1 - y)^2 at Chebyshev nodes y, so that sqrt(1 - mu^2) is smooth in y. A
-    matrix times the values of a function at the points yields integrals that begin at y = 0. The
-    integrals end at the nodes of `Curves` for the matrix of shape (TERMS, FINE), and at all nodes y
-    and at y = 1 for the matrix of shape (FINE + 1, FINE).
+    matrix times the values of a function at the points yields integrals that begin at y = 0. For
+    the first matrix, (TERMS, FINE), the integrals end at the nodes of `Curves`. For the second
+    matrix, (FINE + 1, FINE), the integrals end at all nodes y and at y = 1.
     """
     y = chebyshev_nodes(FINE)
     integral = chebint(chebyshev_coefficients(np.eye(FINE)), lbnd=-1.0, scl=0.5)
@@ -495,8 +495,8 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     D = E_single * E_single * missing * (1.0 + missing)
     facets = xp.tensordot(matrix, E_single, axes=1), xp.tensordot(matrix, D, axes=1)[:SMOOTH]
 
-    # The interface reflects light back to EON: the fraction E_r of 2 mu' dmu' within the critical
-    # angle, and all light beyond the critical angle.
+    # Light that EON sends up is distributed like 2 mu' dmu'. The interface reflects the fraction
+    # E_r of this light within the critical angle, and all light beyond the critical angle.
     fine, step = cosine_at(alpha, places)
     E_single, D = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
@@ -509,7 +509,7 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     H = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
     # The integral of s / t over azimuths is 2 S S' (1 / max(mu, mu') - 1). R(m) is the fraction of
-    # the light with the cosine m that is reflected back to EON. Hence b and <b>_R are integrals.
+    # the light with the cosine m that is reflected back to EON. In terms of R(m),
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
     #   <b>_R = 8 / (pi R^2) int R(m) S (1 - m) [int_0^m R(x) S x dx] dm.
     S = root((1.0 - fine) * (1.0 + fine)) / ior

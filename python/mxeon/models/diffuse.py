@@ -252,11 +252,11 @@ def oren_nayar_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, sigma: ArrayLi
         C2 = 0.45 k (sin(alpha) - (2 beta / pi)^3 where cos(phi) < 0),
         C3 = 0.125 k (4 alpha beta / pi^2)^2
 
-    alpha is the larger and beta the smaller polar angle; phi is the difference of the azimuths of
-    wo and wi. For rough dark surfaces and two grazing directions from opposite sides, the published
-    fit is negative, down to -0.27 rho / pi. If both directions graze the surface,
-    (sin(alpha) - (2 beta / pi)^3) tan(beta) has the limit 6 / pi, while the tangent after C3 has no
-    limit and counts as 0. [OrenNayar1994], functional approximation for Gaussian slopes.
+    alpha is the larger polar angle, beta is the smaller polar angle, and phi is the difference of
+    the azimuths. For rough dark surfaces and two grazing directions from opposite sides, the
+    published fit is negative, down to -0.27 rho / pi. If both directions graze the surface,
+    (sin(alpha) - (2 beta / pi)^3) tan(beta) has the limit 6 / pi, while tan((alpha + beta) / 2) has
+    no limit and counts as 0. [OrenNayar1994], functional approximation for Gaussian slopes.
 
         >>> oren_nayar_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.063766, 0.269282])

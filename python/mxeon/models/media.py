@@ -83,7 +83,7 @@ def generalized_schlick_edf(
 
         L_e = (r_0 + (r_90 - r_0) (1 - cos)^q) L_base
 
-    |cos| replaces a negative cos, for which the published factor would not lie between r_0 and
+    If cos is negative, |cos| is used, because the published factor would not lie between r_0 and
     r_90. [MaterialX2026], section `generalized_schlick_edf`, Generalized Schlick Emission
     Equations.
 
@@ -98,7 +98,7 @@ def generalized_schlick_edf(
 
 
 def cone_cosine(angle: Array) -> Array:
-    """Cosine of half of an angle in degrees, which is exactly 0 for 180 degrees."""
+    """Cosine of half an angle in degrees. The result for 180 degrees is exactly 0."""
     return array_namespace(angle).sin(HALF_TURN * (180.0 - angle))
 
 
@@ -188,7 +188,7 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     return covered * (emitted + light)
 
 
-# Number of nodes per panel, and number of panels, which is high because the integrand has a kink.
+# Nodes per panel, and number of panels. There are many panels because the integrand has a kink.
 BLUR_NODES, PANELS = 50, 40
 FAR = 3.0  # length of the profile's second exponential, divided by the length of the first
 
@@ -226,12 +226,12 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Cosine blurred by one exponential, and fraction of the exponential for chords up to 2."""
+    """Cosine blurred by an exponential of chords up to 2, and the exponential's share up to 2."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
-    # Compute the mean of max(cos(theta), 0) over all points of the unit sphere at equal distance.
+    # Compute the mean of max(cos(theta), 0) over the circle of points at each distance.
     mu, squared = mu[..., np.newaxis], distance * distance
     along = mu * (1.0 - 0.5 * squared)
     across = arrays.root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
@@ -276,7 +276,7 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     xp = array_namespace(kelvin)
     exponent = SECOND / (like(NANOMETER * WAVELENGTHS, kelvin) * kelvin)
     least = exponent[..., -1:]  # the longest wavelength has the smallest exponent
-    # Compute (exp(x) - 1) / exp(least). Only negligible terms are clamped.
+    # `growth` is (exp(exponent) - 1) / exp(least). The limit 700 affects only negligible terms.
     growth = xp.exp(xp.minimum(exponent - least, 700.0)) * -xp.expm1(-exponent)
     xyz = xp.tensordot(like(WAVELENGTHS**-5.0, kelvin) / growth, like(CIE_1931, kelvin), axes=1)
     return xyz / xyz[..., 1:2]

@@ -197,9 +197,9 @@ def eon_sample(
 
     `wi` (..., 3): Unit vectors, z >= 2^-53. `pdf` (...): `eon_pdf` of `wi`, in 1/sr. Accuracy: the
     relative difference between the true density of `wi` and `pdf` is below 1.3e-5. So a sample
-    weight computed with the true density would be within 1.3e-5 of the albedo, and its relative
-    variance would be below 1.7e-10. docs/sampling.md explains the method; EON is defined in
-    [Portsmouth2025], Eqs. (16) and (19).
+    weight computed with the true density would be within 1.3e-5 of the albedo, and the relative
+    variance of the weight would be below 1.7e-10. docs/sampling.md explains the method; EON is
+    defined in [Portsmouth2025], Eqs. (16) and (19).
 
         >>> wi, pdf = eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.0)
         >>> wi.round(6), round(float(pdf), 6)
@@ -256,7 +256,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     # `rest` is 1 - v[3] for the flat part, without cancellation.
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])
-    # Sample a cosine from each part but the flat part, and keep the cosine of the chosen part.
+    # Sample one cosine from each of lower, upper and multiple; keep the chosen part's cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, arrays.power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(arrays.power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
@@ -339,7 +339,7 @@ def eon_upper_cosine(y: Array, mu_o: Array, y_o: Array) -> Array:
 
 
 def eon_multiple_cosine(t: Array) -> Array:
-    """Cosine sampled in proportion to H(mu) mu, approximately, from t = v^(1/3) for a uniform v."""
+    """Cosine with a density near H(mu) mu, up to a factor, from t = v^(1/3) for a uniform v."""
     a, b, c, d, e, f = MULTIPLE
     m = 1.0 - t
     w = root(m)
@@ -544,7 +544,7 @@ def _cltc_draw(
     """`cltc_sample` for valid arguments; `rest` is 1 - u1 without a loss of digits."""
     d = ltc_md(wo[..., 2], roughness)
     wi, pdf = ltc_transformed(wo, cltc_clipped(u1, u2, d, rest), roughness, d)
-    # On the edge of the lune, d x + z is 0 up to rounding, which may make it negative.
+    # On the edge of the lune, where d x + z is 0, rounding may make d x + z negative.
     wi = stack_xyz(wi[..., 0], wi[..., 1], arrays.at_least_0(wi[..., 2]))
     return wi, pdf / cltc_kept_fraction(d)
 

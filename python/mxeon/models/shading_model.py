@@ -94,7 +94,7 @@ def _floats(value: ArrayLike) -> Array:
 def _flattened(array: Array, lead: tuple[int, ...], last: bool, whole: bool = False) -> Array:
     """Array reshaped to N rows, or to one row if there is only one value.
 
-    - `lead`: Shape of the array of pairs of directions, of which there are N.
+    - `lead`: Shape of the array of pairs of directions; N is the number of pairs.
     - `last`: Whether the last axis holds components; rows are then arrays of components.
     - `whole`: Whether to return N equal rows if there is only one value.
     """
@@ -105,7 +105,7 @@ def _flattened(array: Array, lead: tuple[int, ...], last: bool, whole: bool = Fa
     return xp.reshape(xp.broadcast_to(array, (*lead, *tail)), (-1, *tail))
 
 
-# The functions of a model, each with the end of the message for models that lack the function.
+# Functions that a model may have. The text ends the message for a model without the function.
 LACKS = {
     **dict.fromkeys(("bsdf", "albedo_dir"), ""),
     **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),

@@ -108,14 +108,14 @@ def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
     """BRDF of `conty_kulla_brdf`, (C, ...), for valid arrays."""
     xp = array_namespace(wo, wi, roughness)
-    # In float32, the smallest normal number is larger than LEAST_DIVISOR.
+    # In float32, LEAST_DIVISOR is 0, so the smallest normal number is the limit.
     least = max(LEAST_DIVISOR, arrays.least_normal(wo))
     mu_o, mu_i, _ = cosines(wo, wi)
     flat = xp.square(wo[..., 0] + wi[..., 0]) + xp.square(wo[..., 1] + wi[..., 1])
     upright = xp.square(mu_o + mu_i)
     total = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
-    # Elements whose limit is 0 are skipped. With NumPy, exp(-inf) is the limit for flat = 0.
+    # Other libraries skip elements whose limit is 0. NumPy evaluates exp(-inf) = 0 for flat = 0.
     counted = (roughness > 0.0) & (divisor >= least)
     smooth = counted & (flat > 0.0)
     roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
@@ -226,7 +226,7 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
     ):
         # At latitudes above 10 sqrt(roughness), the density is below exp(-50) times the maximum.
         width = xp.minimum(span, 10.0 * xp.sqrt(roughness))
-        # `above` and `below` are the distances of the latitude from both ends of the interval.
+        # Distances of the latitude from the interval's lower end, `above`, and upper end, `below`.
         above = width[..., np.newaxis] * x
         below = width[..., np.newaxis] * (1.0 - x if xp is not arrays.NUMPY else x[::-1])
         below = below + (span - width)[..., np.newaxis]
@@ -249,7 +249,7 @@ def _azimuths(
     c, s = xp.sin(latitude), xp.cos(latitude)
     a, b = mu * c, root((1.0 - mu) * (1.0 + mu)) * s
     if partial:
-        # The largest phi has tan(phi / 2) = rise / fall; latitude + delta is pi / 2 - below.
+        # The largest phi is 2 atan(rise / fall). sin(2 below) equals sin(2 (latitude + delta)).
         rise, fall = root(xp.sin(2.0 * above)), root(xp.sin(2.0 * below))
     else:
         rise, fall = 0.0 * a + 1.0, 0.0 * a

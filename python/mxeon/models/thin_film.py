@@ -76,7 +76,7 @@ WEIGHTS = np.eye(3)[:, [row for row, *_ in GAUSSIANS]] * AREAS
 THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
 SAME = 2.0**-20  # indices of refraction with a smaller relative difference count as equal
-# Weights of the nodes of the trapezoidal rule, from the center to one end, and sum of all weights.
+# Weights of the trapezoidal rule, from the center to one end. HEIGHT is the sum over both sides.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
 FILM_BLOCK = 2**13  # elements per block
@@ -257,7 +257,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
     kernel = float(HEIGHTS[0]) / _distance(real, imaginary)
     c, s = turn_c, turn_s
     for height in HEIGHTS[1:].tolist():
-        # Add the two nodes at the same distance on both sides of the center, then move outward.
+        # Add the two nodes at this distance from the center, then continue with a larger distance.
         a, b, d, e = real * c, imaginary * s, imaginary * c, real * s
         kernel += height / _distance(a - b, d + e)
         kernel += height / _distance(a + b, d - e)
@@ -303,7 +303,7 @@ class Form:
     - `orders`: Number M of orders; None sums all orders.
     - `mixed`: If True, X, Y and Z are computed with the substrate's values for red, green and blue,
       respectively. If False, X, Y and Z are computed for each channel of the substrate, so that a
-      vanishing film does not mix the channels.
+      film of thickness near 0 does not mix the channels.
     - `share`: Factor of the reflectance of a Schlick substrate; 1 in the specification.
     - `least`: Smallest color0 that is converted to the index of refraction of a Schlick substrate.
     - `clamped`: Whether values are clamped to [0, 1], as in the specification.
@@ -377,7 +377,7 @@ def _film_average(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of POINTS nodes, interpolation matrix to FINE nodes, and weights of FINE nodes."""
+    """Cosines of POINTS nodes, the matrix that interpolates to FINE nodes, and the FINE weights."""
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)
@@ -403,7 +403,7 @@ def _airy(
 
 
 def to_rgb(xyz: Array, form: Form) -> Array:
-    """RGB, shape (3, ...), from XYZ for each channel of the substrate, (3, channels, ...)."""
+    """RGB, (3, ...), from X, Y and Z for each channel of the substrate, (3, channels, ...)."""
     xp, matrix = array_namespace(xyz), np.array(form.matrix)
     xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
     if form.mixed:

@@ -173,8 +173,8 @@ CAP_BLOCK = 2**4  # views per block
 # Largest 1 - ior^2 in the quadrature; if `ior` is below 3e-8, almost no light is transmitted.
 MOST_SQUARED = 1.0 - 1e-15
 
-# Four values per quadrature node: the cosine wo . wh, the cosine of wi, the weight, and between
-# them the length of (alpha_x x, alpha_y y, z), where x, y and z are the components of wi.
+# Values per quadrature node: wo . wh, the cosine of wi, the length of (alpha_x x, alpha_y y, z) for
+# wi = (x, y, z), and the weight.
 Nodes: TypeAlias = tuple[Array, Array, Array, Array]
 
 
@@ -215,7 +215,7 @@ def evaluate_transmittance(
 ) -> Array:
     """Transmitted fraction, shape (..., C), for the Fresnel reflectance F that `at` computes.
 
-    - `vectors`, `numbers`: Validated inputs with and without channels; `numbers` includes `ior`.
+    - `vectors`, `numbers`: Validated inputs; only `vectors` have channels. `ior` is in `numbers`.
     """
     directions = {"wo": checked_directions("wo", wo)}
     pairs = {"roughness": checked_roughness(roughness)}
@@ -386,7 +386,7 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
 
 def index_of(reflectance: Array, least: float) -> Array:
-    """Index of refraction from a reflectance along the normal that is clamped to [least, 0.99]."""
+    """Index of refraction for the reflectance along the normal after a clamp to [least, 0.99]."""
     amplitude = arrays.root(within(reflectance, least, BRIGHTEST))
     return (1.0 + amplitude) / (1.0 - amplitude)
 
@@ -475,7 +475,7 @@ def _by_index(
     reading: str,
     inside: bool,
 ) -> Array:
-    """Result of `evaluate(F, index, colors, numbers)`, called once or for each channel.
+    """Result of `evaluate(F, index, colors, numbers)`, from one call or from one call per channel.
 
     `evaluate` is called for each channel if each channel has its own index of refraction.
     """

@@ -49,7 +49,7 @@ class Namespace(Protocol):
 PLAIN = np.ndarray, np.generic, float, int, list, tuple  # types that NumPy handles
 # NumPy 1 lacks some names of the standard, such as `atan`.
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
-# Array types that do not follow the standard, and namespaces in use, by the name of the library.
+# Two tables by a library's name: array types that lack the standard, and namespaces in use.
 OTHERS: dict[str, type] = {}
 FUNCTIONS: dict[str, Namespace] = {}
 
@@ -144,7 +144,7 @@ def _converter(foreign: Sequence[object]) -> Callable[[object], object]:
 
 
 def _device(array: object) -> dict[str, object]:
-    """Keyword argument `device` for an array of PyTorch; no arguments for other libraries."""
+    """Keyword argument `device` of a PyTorch array; an empty dictionary for other libraries."""
     return {"device": cast(Array, array).device} if library(array) == "torch" else {}
 
 
@@ -157,7 +157,7 @@ def like(values: Numbers, array: Array) -> Array:
 
 
 def host_values(value: object) -> Numbers | None:
-    """NumPy array with the values of another library's array, or None while that library traces."""
+    """Values of another library's array as a NumPy array; None while the array is traced."""
     try:
         if library(value) != "torch":
             return np.asarray(value)
@@ -173,7 +173,7 @@ def host_values(value: object) -> Numbers | None:
 
 def cosine(z: Array) -> Array:
     """Cosine of a direction's polar angle: z, clamped to [0, 1] because z may be rounded."""
-    # The z of a direction in a NumPy array was checked before and is not negative.
+    # In NumPy arrays, z is not negative, because the caller has checked the direction.
     return np.minimum(z, 1.0) if array_namespace(z) is NUMPY else within(z)
 
 
@@ -224,7 +224,7 @@ def except_where(
     x: Array,
     interior: float,
 ) -> Array:
-    """formula(x), or `value` with derivative 0 where `edge(x)`; `interior` then replaces x."""
+    """formula(x), but `value` with derivative 0 where `edge(x)` is true."""
     xp = array_namespace(x)
     if xp is NUMPY:
         return formula(x)

@@ -33,8 +33,8 @@ class Bsdf:
 def throughput(albedo: ArrayLike) -> Array:
     """Throughput T = 1 - E of a lobe whose directional albedo, weight included, is E (..., C).
 
-    T is negative if the albedo exceeds 1, and above 1 if the albedo is negative; the least value of
-    Zeltner's fit is -2.2e-5. E is the albedo of a white lobe, because light that the `color` of
+    T is negative if the albedo exceeds 1, and above 1 if the albedo is negative; Zeltner's fit
+    falls to -2.2e-5. E is the albedo of a white lobe, because light that the `color` of
     `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is absorbed. In specifications before
     August 2026, E includes the color. Raises `ValueError` if an albedo is infinite or NaN.
     [MaterialX2026] of August 2026, Vertical-Layering Transmittance.

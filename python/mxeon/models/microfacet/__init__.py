@@ -109,9 +109,8 @@ def missing(pair: Pair) -> Array:
     return missing_of(pair.wo, pair.roughness)
 
 
-# If one roughness is seen from at least MANY views, a polynomial in the two variables of
-# `_series_variables`, of degrees DEGREES, replaces the quadrature. A polynomial whose last
-# coefficients exceed TAIL is not used.
+# For at least MANY views of one roughness, a polynomial of the degrees DEGREES replaces the
+# quadrature, unless the last coefficients exceed TAIL. `_series_variables` are the variables.
 DEGREES, TAIL = (32, 16), 5e-6
 MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
 
@@ -158,7 +157,7 @@ def _series_variables(wo: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _missing_by_views(rows: Array) -> Array:
-    """(1 - E_ss) / E_ss, computed once for equal views, and by a polynomial for many views."""
+    """(1 - E_ss) / E_ss. Equal views are computed once, and many views by a polynomial."""
     wo, alphas = rows[:3], rows[3:]
     uniform = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
     if uniform and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
@@ -225,7 +224,7 @@ def evaluate_lobe(
 ) -> Array:
     """BRDF of a lobe, shape (..., C).
 
-    - `vectors`, `numbers`: Validated inputs of the Fresnel curve, with and without channels.
+    - `vectors`, `numbers`: Validated inputs of the Fresnel curve; only `vectors` have channels.
     """
     directions = {"wo": checked_directions("wo", wo), "wi": checked_directions("wi", wi)}
     pairs = {"roughness": checked_roughness(roughness)}
@@ -475,7 +474,7 @@ def lobe_albedo(
 ) -> Array:
     """Directional albedo of a lobe, shape (..., C).
 
-    - `vectors`, `numbers`: Validated inputs of the Fresnel curve, with and without channels.
+    - `vectors`, `numbers`: Validated inputs of the Fresnel curve; only `vectors` have channels.
     """
     wo, roughness = checked_directions("wo", wo), checked_roughness(roughness)
     arguments.checked_switch("compensate", compensate)

@@ -44,7 +44,7 @@ Factor: TypeAlias = Callable[[Pair], Array]
 
 @dataclass(frozen=True)
 class MicrofacetDefect:
-    """A known error of renderers in the three microfacet nodes."""
+    """An error that renderers are known to make in pbrlib's three microfacet nodes."""
 
     name: str
     title: str
@@ -128,8 +128,8 @@ def _june(pair: Pair) -> Array:
 UNCOMPENSATED = "no energy compensation"
 AND_FIT, AVERAGE_BY_ENDS = "and MaterialX's fit of E_ss", "the average F0 + (F90 - F0) / 21"
 MEAN_ALPHA = "Smith at the geometric mean"
-# Each row describes a wrong compensation by the end of the defect's name, the end of the defect's
-# title, the function that replaces F_ss, and the function that computes (1 - E_ss) / E_ss.
+# Wrong compensations. The columns are the end of the defect's name, the end of the defect's title,
+# the function that replaces F_ss, and the function for (1 - E_ss) / E_ss.
 COMPENSATIONS = (
     ("half", "F at the half vector", _F_half, microfacet.missing),
     ("f0", "F along the normal", _F_normal, microfacet.missing),
@@ -159,8 +159,8 @@ MICROFACET_DEFECTS = (
 FITTED = Lobe(fitted_half, _at_the_mean)
 AVERAGED = Lobe(averaged_fitted, _at_the_mean)
 MEAN_TITLE = f"{MEAN_ALPHA}, and MaterialX's compensation"
-# MaterialX's lobes, and MaterialX's lobe with one more error. Renderers that copied MaterialX's
-# shaders may contain such an error.
+# The first two rows are MaterialX's own lobes. Each other row combines MaterialX's compensation
+# with one further error, as may renderers that copied MaterialX's shaders.
 FITTED_DEFECTS = (
     MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
     MicrofacetDefect("smith_mean_average", f"{MEAN_TITLE} by F0 and F90", AVERAGED),

@@ -147,8 +147,8 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
 
 
 def _is_smooth(n2: Array) -> Array:
-    """Whether F's singularities in c, sqrt(1 - n^2) and -1 / sqrt(1 + n^2), are far from [0, 1]."""
-    # For n^2 = -1, the second singularity is at infinity.
+    """Whether F(c) is smooth: no singularity of F lies near the interval [0, 1] of cosines c."""
+    # F is singular at sqrt(1 - n^2) and at -1 / sqrt(1 + n^2), which is infinite for n^2 = -1.
     with np.errstate(divide="ignore", invalid="ignore"):
         points = np.stack([np.sqrt(1.0 - n2), -1.0 / np.sqrt(1.0 + n2)])
     far = np.abs(points) + np.abs(points - 1.0) > 0.5 * (ELLIPSE + 1.0 / ELLIPSE)
@@ -164,8 +164,8 @@ def _smooth_avg(ior: Array, extinction: Array) -> Array:
 def _split_avg(ior: Array, extinction: Array) -> Array:
     """F_ss by a double-exponential rule on either side of the critical angle.
 
-    The nodes of this rule are densest at the ends of both intervals, where F is singular. The
-    integral does not depend on where it is split, so the split is a constant in derivatives.
+    The nodes of this rule are densest at the ends of both intervals, where F is singular. Moving
+    the split does not change the integral, so derivatives treat the split as a constant.
     """
     # The cosine of the critical angle is the real part of sqrt(1 - n^2).
     xp = array_namespace(ior, extinction)

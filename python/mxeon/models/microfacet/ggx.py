@@ -34,8 +34,8 @@ from mxeon.models.core.arguments import checked_directions, checked_roughness
 from mxeon.models.core.arrays import NUMPY, Array, ArrayLike, any_array, array_namespace, like, root
 from mxeon.models.core.evaluation import evaluate_number
 
-# The reciprocal of a sum of cosines below this limit counts as 0. A product of the reciprocal with
-# D, which is up to 1e162, could overflow.
+# Where a sum of cosines is below this limit, the reciprocal of the sum is replaced by 0, because
+# the reciprocal times D could overflow. D is up to 1e162.
 LEAST_DIVISOR = 1e-140
 
 
@@ -50,7 +50,7 @@ def ndf(wh: Array, roughness: Array) -> Array:
     (alpha_x, alpha_y), (x, y, z) = roughness, wh
     area = alpha_x * alpha_y
     squared = (alpha_y * x) ** 2 + (alpha_x * y) ** 2 + (area * z) ** 2
-    # For alpha below about 1e-100, the squares underflow to 0, and the surface counts as a mirror.
+    # For alpha below about 1e-100, alpha^2 underflows to 0, and the surface counts as a mirror.
     positive = squared > 0.0
     scale = area / xp.where(positive, squared, 1.0)
     return xp.where(positive, area * scale * scale / np.pi, 0.0)
@@ -96,7 +96,7 @@ def half_vector(wo: Array, wi: Array) -> tuple[Array, Array]:
 def reciprocal(x: Array) -> Array:
     """1 / x, or 0 if x is so small that a product with D could overflow."""
     xp = array_namespace(x)
-    # In float32, the smallest normal number is larger than LEAST_DIVISOR.
+    # In float32, LEAST_DIVISOR is 0, so the smallest normal number is the limit.
     large = x > max(LEAST_DIVISOR, arrays.least_normal(x))
     return xp.where(large, 1.0 / xp.where(large, x, 1.0), 0.0)
 
@@ -227,8 +227,8 @@ RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 # Smallest scale of the nodes near wo, and smallest elevation of wo, in radians. Both limits change
 # E_ss by less than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
-# Smallest alpha that is a divisor, and smallest elevation, for arrays other than NumPy's, whose
-# derivatives square these numbers, possibly in float32.
+# Limit of elevations, and of alphas that are divisors, for libraries that compute derivatives. The
+# derivatives contain the square of the limit, which must not underflow in float32.
 LEAST_SQUARED = 1e-15
 
 # Mantissas of cosines are rounded to multiples of 1 / MANTISSA_STEPS, so that more cosines are
@@ -368,7 +368,7 @@ def missing_light(mu: Array, alpha: Array) -> Array:
 
     Accuracy: for all mu and alpha in [0, 1], the absolute error is below 1e-10, compared with the
     quadrature of `mxeon.models.ggx_albedo_dir` with twice as many panels. Many cosines are fastest
-    with a single alpha, because they share one set of cubics.
+    with a single alpha, because the cosines share one set of cubics.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _by_cubics(mu, float(alpha.item()))
@@ -397,7 +397,7 @@ def _by_cubics(mu: Array, alpha: float) -> Array:
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
     place = np.cbrt(s)
     place *= CELLS
-    # A NaN may use any cell, since `place` stays NaN.
+    # If `place` is NaN, any cell will do, because the result is NaN.
     cell = np.fmin(place, CELLS).astype(np.int32)
     place -= cell
     *lower, highest = _cubics(alpha)

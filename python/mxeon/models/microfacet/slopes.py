@@ -5,8 +5,8 @@ If the half vector is parallel to (alpha_x r cos(phi), alpha_y r sin(phi), 1), a
 
     integral of F G2 (wo . wh) / (h_z mu_o) r / (pi (1 + r^2)^2) dr dphi,
 
-whose integrand has no sharp peak at any alpha. wi lies above the horizon from r = 0 up to a
-limit that depends on phi, so the only kink within the range is the kink of F at a critical angle.
+whose integrand has no sharp peak at any alpha. The integral over r ends where wi reaches the
+horizon. Before this end, the integrand has a kink only at the critical angle, where F has a kink.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from mxeon.models.core.arrays import Array, array_namespace, at_least_0, at_most
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
-# Number of Gauss-Legendre nodes per panel of r, of panels, and of nodes per quadrant of phi.
+# Three numbers: Gauss-Legendre nodes per panel of r, panels of r, and nodes per quadrant of phi.
 SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
-# If there is a critical angle: number of nodes per panel of r, and per interval of azimuths.
+# Numbers of nodes if there is a critical angle: nodes per panel of r, nodes per azimuth interval.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
 # Smallest cosine of wo and largest r. Less than 1e-12 of the light has a larger r.
@@ -65,7 +65,7 @@ class Slopes:
 
     @property
     def scale(self) -> Array:
-        """Step in r, and in omega near a right angle, over which the integrand changes much."""
+        """Width in r, and in omega near a right angle, of the steepest part of the integrand."""
         maximum = array_namespace(self.mu_o, self.steepness).maximum
         return self.mu_o / maximum(self.steepness, self.mu_o)
 
@@ -133,7 +133,7 @@ class Slopes:
 
 
 def _squared(slope: tuple[Array, Array]) -> Array:
-    """Squared length of a slope; for the slope at r = 1, this is g in `Slopes.rays`."""
+    """Squared length of a slope. The squared length of the slope at r = 1 is g in `Slopes.rays`."""
     return slope[0] ** 2 + slope[1] ** 2
 
 
@@ -187,7 +187,7 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
 def refracting_nodes(
     wo: Array, roughness: Array, squared: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Cosine wo . h, cosine and stretched length of the refracted wi, and weight of visible facets.
+    """Per visible facet: wo . h, cosine and stretched length of the refracted wi, and weight.
 
     The refracted wi = (L h - wo) / n must point below the horizon, where n^2 = 1 - squared and
     L = |wo + n wi|. This requires an r that is larger than the smaller root of
@@ -233,7 +233,7 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
     none = ~inside & (~ahead | (b * b < a * d))
     low = xp.where(inside, 0.0, -d / xp.where(ahead, b + size, 1.0))
     falling = xp.where(a < 0.0, (b + size) / xp.where(a < 0.0, -a, 1.0), np.inf)
-    # If `size` equals `b`, alpha is 0.
+    # `size` equals `b` only if alpha is 0.
     behind = xp.where(size > b, d / xp.where(size > b, size - b, 1.0), np.inf)
     high = xp.where(ahead, falling, behind)
     return xp.where(none, 0.0, low), xp.where(none, 0.0, high)
@@ -244,7 +244,7 @@ def _split_azimuths(
 ) -> tuple[Array, Array]:
     """Nodes and weights of omega, in intervals that end at two azimuths on either side of wo.
 
-    The azimuths are `meeting` and the azimuth where facets at the critical angle are vertical.
+    One azimuth is `meeting`. At the other azimuth, facets at the critical angle are vertical.
     """
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
@@ -275,7 +275,7 @@ def _split_azimuths(
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
-    """Azimuth relative to wo whose cosine is sqrt(squared) / sin(theta_o)."""
+    """Angle with the cosine sqrt(squared) / sin(theta_o), an azimuth relative to wo."""
     xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
     return arrays.arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
 

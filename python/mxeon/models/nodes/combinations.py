@@ -28,10 +28,10 @@ from mxeon.models.sheen import (
 ROUGHNESS = ("top/roughness", "base/roughness")
 COLORS = ("top/color", "base/color")
 AMOUNT = "lobe/mix"  # weight of `top` or of the sum
-AMOUNT_ABOVE = "mixed/mix"  # weight of the sum in a mix that is the top of a layer
+AMOUNT_ABOVE = "mixed/mix"  # weight of `top` + `base` in the mix that covers `base`
 FACTOR = "lobe/in2"  # factor of `top` or of the sum
-# Two weights: a white opaque lobe is mixed with `top` by the first weight, and the mix is combined
-# with another white opaque lobe by the second weight.
+# The first input is the weight of a white opaque lobe in a mix with `top`. The second input is the
+# weight of this mix in a mix with another white opaque lobe.
 MASKS = ("inner/in1", "outer/in1")
 Albedo = Callable[[Array, Inputs], Array]
 Sheen = tuple[Callable[..., Array], Callable[..., Array]]  # BRDF and directional albedo

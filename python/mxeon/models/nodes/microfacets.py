@@ -38,7 +38,7 @@ class MicrofacetLobe:
 
     category: str
     fresnel: Callable[[Array, Inputs], Array]  # Fresnel reflectance F(mu, inputs)
-    edge: str = ""  # name of the input for F at grazing incidence; "" if this F is always 1
+    edge: str = ""  # input for F at grazing incidence; "" if F is always 1 there
 
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
         """BRDF of the node. If `terms` replaces the specification's lobe, a film is ignored."""
@@ -71,7 +71,7 @@ class MicrofacetLobe:
         return self._compensated(wo, inputs, self._at_view(wo, inputs))
 
     def averaged(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo whose compensation uses the average F of F0 and F90, as in MaterialX after 1.39.5."""
+        """Albedo whose compensation averages F from F0 and F90, as in MaterialX after 1.39.5."""
         return self._compensated(wo, inputs, defects.schlick_average(*self.ends(wo, inputs)))
 
     def _compensated(self, wo: Array, inputs: Inputs, F: Array) -> Array:
@@ -203,7 +203,7 @@ STOCK = Form(
     thin_film.CIE_RGB, 2, True, 1.0, 0.01
 )  # MaterialX's choices, but with the full reflectance of a Schlick substrate
 MIXED = Form(mixed=True)
-# Each row has a title, a form of the thin-film model, and whether the specification permits it.
+# Columns: title, form of the thin-film model, and whether the specification permits the form.
 FORMS = (
     ("MaterialX's matrix, orders and mixed channels", STOCK, True),
     ("half of the substrate's reflectance, and MaterialX's choices", thin_film.MATERIALX, False),
@@ -220,7 +220,7 @@ def _bare(inputs: Inputs) -> dict[str, Array]:
 
 
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
-    """Albedo under MaterialX's environment. The compensation uses F of the film, averaged or at wo."""
+    """Albedo in MaterialX's environment. If `averaged`, the compensation uses an average of F."""
     mu = np.ones(len(wo)) if averaged else np.minimum(wo[:, 2], 1.0)
     F = thin_film.film_reflectance(category, mu, inputs, form)
     F = defects.schlick_average(F, 1.0) if averaged else F
@@ -229,7 +229,7 @@ def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: I
 
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """Albedo of MaterialX's throughput, a fit without film whose compensation uses F of the film."""
+    """MaterialX's albedo for the throughput: a fit for no film, compensated with F of the film."""
     F = thin_film.film_reflectance(lobe.category, np.minimum(wo[:, 2], 1.0), inputs, form)
     albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo

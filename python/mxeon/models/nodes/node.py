@@ -124,7 +124,7 @@ class PbrNode(Node[Scattering]):
     - `fixed`: Inputs that select the mode.
     - `layerable`: Whether the share 1 - E of the light passes to the layer below, where E is the
       albedo at `white` inputs. An opaque node of weight 1 passes no light.
-    - `taken`: E in the share 1 - E, if this E is not `albedo` at `white` inputs.
+    - `taken`: The albedo E in the share 1 - E, if E is not `albedo` at `white` inputs.
     - `transmits`: Whether the node scatters light from below the horizon instead of from above.
     - `mirror`: Inputs for which the node reflects all light, or empty if there are no such inputs.
     - `parameters`: Inputs of the mode, if the names or quantities differ from those of the
@@ -153,7 +153,7 @@ COLORED = "the color in the light that passes, as in texts before August 2026"
 
 
 def white(inputs: Inputs) -> dict[str, Array]:
-    """Inputs in which the colors that absorb light, `color` and `tint`, are white."""
+    """Copy of the inputs in which `color` and `tint`, the colors that absorb light, are white."""
     return {**inputs, **{name: np.ones((1, 3)) for name in ABSORBING if name in inputs}}
 
 
@@ -170,8 +170,8 @@ def linear_nodes(
 ) -> tuple[Combined, ...]:
     """Names, titles, categories, inputs and functions of nodes that mix, add or scale colors.
 
-    - `paths`: Paths of four inputs: first color, second color, weight and factor of the first
-      color.
+    - `paths`: Paths of four inputs: the first color, the second color, the first color's weight,
+      and the first color's factor.
     """
     first, second, share, factor = paths
 

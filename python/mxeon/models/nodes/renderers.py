@@ -100,7 +100,7 @@ def _largest(albedo: Array) -> Array:
 
 
 def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
-    """Largest channel of the single-scattering albedo divided by the albedo of lossless facets."""
+    """Single-scattering albedo's largest channel, divided by the albedo of lossless facets."""
     alpha = microfacets.isotropic(inputs)["roughness"][:, 0]
     missing = missing_light(wo[:, 2], alpha)[:, np.newaxis]
     return _largest(_single(lobe, wo, inputs) * (1.0 + missing))

@@ -91,7 +91,7 @@ def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
 
 
 def _dual(inputs: Inputs) -> dict[str, Array]:
-    """Squares of two roughnesses. The first replaces a negative second, as implementations do."""
+    """Squares of two roughnesses. A negative second roughness is replaced by the first one."""
     pair = np.asarray(inputs["roughness"], np.float64)
     second = np.where(pair[..., 1] < 0.0, pair[..., 0], pair[..., 1])
     return {"out": roughness_dual(np.clip(np.stack([pair[..., 0], second], axis=-1), 0.0, 1.0))}

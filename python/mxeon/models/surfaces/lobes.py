@@ -26,7 +26,7 @@ Values: TypeAlias = Mapping[str, ArrayLike]
 
 
 def filled(defaults: Values, **inputs: ArrayLike) -> dict[str, Array]:
-    """Parameters as columns. Parameters that are not in `inputs` have the defaults.
+    """The parameters in `inputs`, and defaults for all other parameters, as columns.
 
     An array has a row for each point. A number or a tuple is valid for all points. Raises TypeError
     for unknown names.

@@ -87,7 +87,7 @@ def alphas(roughness: Array, anisotropy: Array) -> Array:
 
 
 def base_alphas(p: Parameters) -> Array:
-    """alphas of the base below a rough coat. Slope variances are added; the coat's counts twice."""
+    """alphas of the base. Below a coat of roughness r_coat, r^4 grows by 2 r_coat^4, up to 1."""
     r, coat = p["specular_roughness"], p["coat_roughness"]
     rough = np.minimum(1.0, r**4 + 2.0 * coat**4) ** 0.25
     return alphas(lerp(r, rough, p["coat_weight"]), p["specular_roughness_anisotropy"])

@@ -5,10 +5,10 @@
     f_below = lerp(transparent, diffuse_weight f_diffuse, opacity)
 
 The reflectance of the specular workflow is `specularColor` at normal incidence and white at grazing
-incidence. The metalness workflow interpolates from ((1 - ior) / (1 + ior))^2 at normal incidence,
-and white at grazing incidence, to `diffuseColor`. The specification does not define layering. Here
-layering is albedo scaling. Each name in the argument `but` replaces a formula.
-[UsdPreviewSurface2019].
+incidence. The metalness workflow blends the reflectance with `diffuseColor`. Without metalness, the
+reflectance is ((1 - ior) / (1 + ior))^2 at normal incidence and white at grazing incidence. The
+specification does not define layering; here layering is albedo scaling. Each name in the argument
+`but` replaces a formula. [UsdPreviewSurface2019].
 """
 
 from __future__ import annotations
