@@ -99,7 +99,7 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
         return
     for name in ("libraries", "resources"):
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
-    (folder / OPTIONS).unlink()  # a link, replaced by `run_tests`
+    (folder / OPTIONS).unlink()  # `run_tests` writes a file in place of this link
     (folder / "bin").mkdir()
     shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # looks for data next to itself
     # MaterialX reads files before subfolders, so documents of eonlib take precedence.

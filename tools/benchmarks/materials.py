@@ -104,7 +104,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, and seconds to compile and per frame by library. Must run in a new process."""
+    """Device, and seconds to compile and to draw a frame, by library. Call in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)

@@ -18,7 +18,7 @@ class Figure(NamedTuple):
     """A measured quantity, with a value for each round."""
 
     name: str
-    unit: str  # "x" for a ratio
+    unit: str  # "x" if the quantity is a ratio
     values: ArrayLike
     goal: float | None = None  # upper limit of the median
 

@@ -60,7 +60,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Print ratios of a sampler's variance to the exact sampler's, at r = 1, by light and view."""
+    """Print the variance of a sampler, divided by the variance of exact samples, at roughness 1."""
     rows = {}
     for title, light in RADIANCES.items():
         ratios = [
@@ -71,7 +71,7 @@ def print_lighting(name):
 
 
 def print_color():
-    """Print the largest relative variance of a channel at r = 1, if samples are exact for gray."""
+    """Print the largest relative variance of a channel, for samples that are exact for gray."""
     rows = {}
     for rho in ((1e-6, 1e-6, 1e-6), (0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (0.8, 0.2, 0.05)):
         found = []

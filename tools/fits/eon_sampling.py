@@ -33,7 +33,7 @@ def multiple_density(mu):
 
 
 def upper_density(m):
-    """Density of m = 1 - mu in the part `upper` for wo at the horizon, S m / (pi/4 - 1/3)."""
+    """Density S m / (pi/4 - 1/3) of m = 1 - mu in the part `upper`, if wo is at the horizon."""
     return mp.sqrt(m * (2 - m)) * m / UPPER_TOTAL
 
 

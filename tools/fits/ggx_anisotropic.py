@@ -6,8 +6,8 @@ are
 
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2.
 
-For the correlation c of slopes along and across, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The lost
-light is the light that isotropic facets lose, with alpha = r at the cosine z r / v, times
+The slopes in both directions have the correlation c, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2.
+The lost light is the light that isotropic facets lose, with alpha = r at the cosine z r / v, times
 
     1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
 

@@ -189,7 +189,7 @@ def cosine(curves, mu, alpha, shape, coefficients):
 
 
 def sample(curves, mu, alpha):
-    """Variables, values and weights of the fit of c, with every third curve at each point.
+    """Variables, values and weights of the fit of c. Each point has only every third curve.
 
     More curves would make the minimax fit singular, because N is a cubic in s at fixed x and y.
     """

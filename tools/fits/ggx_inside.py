@@ -72,7 +72,7 @@ def albedo(mu, alpha, ior):
 
 
 def passing(mu, alpha, ior, c):
-    """Fits of the mean of 1 - F over visible facets, and of the share that `passed` computes."""
+    """Fitted mean of 1 - F over visible facets, and fitted share of light as in `passed`."""
     s2, bent = 1.0 - mu * mu, 1.0 - ior * ior
     x, y, z = mu / (mu + alpha), np.sqrt(alpha), np.sqrt(s2) / (np.sqrt(s2) + alpha)
     ratio = mu * mu * s2 / alpha**2

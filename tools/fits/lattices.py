@@ -31,7 +31,7 @@ def r2(count):
 
 
 def hammersley(count):
-    """Hammersley points: i / n, and i with mirrored binary digits."""
+    """Hammersley points with the coordinates i / n and the mirrored binary digits of i."""
     i, mirrored = np.arange(count), np.zeros(count)
     for digit in range(count.bit_length()):
         mirrored += ((i >> digit) & 1) * 0.5 ** (digit + 1)
@@ -42,7 +42,7 @@ LATTICES = {"Fibonacci": fibonacci, "R2": r2, "Hammersley": hammersley}
 
 
 def error(lattice, count, alpha):
-    """Largest relative error of a white lobe's albedo over views, also with swapped coordinates."""
+    """Largest relative error of a white lobe's albedo, for both orders of the coordinates."""
     numbers, found = lattice(count), 0.0
     wo = np.stack([np.sqrt(1.0 - COSINES**2), 0.0 * COSINES, COSINES], axis=-1)[:, None]
     for u in (numbers, numbers[::-1]):

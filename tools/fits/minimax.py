@@ -36,7 +36,7 @@ def least_largest(rows, right):
     """
 
     def signed(i, sign):
-        """Coefficients of x and level in the equation sign (row @ x) - level = sign right."""
+        """Coefficients of the unknowns x and level in sign (row @ x) - level = sign right."""
         return [sign * each for each in rows[i]] + [-mp.one]
 
     count = len(rows[0])
@@ -123,7 +123,7 @@ def refined(form, variables, values, weights, start):
 
 
 def numerator(form, variables, values, weights, below):
-    """Minimax coefficients of N if D has the coefficients `below`, followed by `below`."""
+    """The minimax coefficients of N for the coefficients `below` of D, and then `below` itself."""
     rows, right = [], []
     for above, monomials, value, weight in _samples(form, variables, values, weights):
         factor = weight / (1 + mp.fdot(monomials, below))

@@ -89,7 +89,7 @@ def _dielectric(wo, inputs):
 
 
 def _schlick(wo, inputs):
-    assert np.all(inputs["color82"] == 1.0)  # no material has layers below a lobe with a dip
+    assert np.all(inputs["color82"] == 1.0)  # no lobe with the dip of color82 is above a layer
 
     def curve(mu, alpha):
         exponent = inputs["exponent"]

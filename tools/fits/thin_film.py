@@ -60,7 +60,7 @@ NUMBERS = 10  # numbers that describe a film, its substrate and its view
 COLORED = 17  # NUMBERS plus seven for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
 MOVED = 0.3  # share of the COLORED numbers that change in a step
-LEAST = 1e-3  # least number except for roughness, cosine and extinction; 0 reflects nothing
+LEAST = 1e-3  # lower limit of numbers, except for roughness, cosine and extinction
 # The worst films of longer searches, which random starts miss: a metal with total reflection in a
 # film of 1000 nm, and glass at grazing below a film of 1000 nm.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
@@ -209,7 +209,7 @@ def visible_errors(category, material, alpha, mu):
 
 
 def albedo_errors(category, material, alpha, mu):
-    """Errors of the albedo, which are `visible_errors` plus 1 - E_ss times the errors of F_ss."""
+    """Errors of the albedo: the sum of `visible_errors` and (1 - E_ss) times the errors of F_ss."""
     loss = 1.0 - ggx_albedo_dir(mu, alpha)
     return visible_errors(category, material, alpha, mu) + loss * average_errors(category, material)
 

@@ -19,9 +19,9 @@ SEED, COUNT = 24, 400  # seed and number of random films
 BARE, HEAVY = 100, 8.0  # number and weight of samples without a film
 START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights, widths
 FACETS = 384  # number of films for the fit of the visible facets
-GRID = 16  # views and roughnesses along each side of the grid of moments
-TIE = 2e-2  # weight of the moments, relative to an error of a film
-BEND = 0.33  # ratio of b to the skewness of nodes a t + b (t^2 - 1), with t in a semicircle
+GRID = 16  # number of views, and number of roughnesses, in `grid`
+TIE = 2e-2  # weight of an error of the moments; an error of a film has weight 1
+BEND = 0.33  # b / skewness for nodes a t + b (t^2 - 1), where t has a semicircular density
 NEAR = 1e-5  # change of a coefficient for difference quotients
 SCALE = 1e3  # scales squared errors to about 1
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares models of EON below an interface with random walks: python -m tools.fits.varnish_walk.
 
-`dielectric_over_eon` is a `layer`: EON receives the light that the dielectric does not reflect, and
-all light from EON leaves. `varnished` has closed forms for light that leaves and for internal
-reflections. The random walks in this file go between EON and GGX facets, and from facet to facet as
-in [Heitz2016], so the interface loses no light. For each rho, the script prints the ratios of both
+In `dielectric_over_eon`, EON receives the light that the dielectric does not reflect, and all light
+from EON leaves. `varnished` has closed forms for light that leaves and for internal reflections.
+The random walks in this file go between EON and GGX facets, and from facet to facet as in
+[Heitz2016], so the interface loses no light. For each rho, the script prints the ratios of both
 models' albedos to the albedo of the walk and the largest error of `varnished`. It also prints the
 ratios of `varnished` to the walk for the light that EON returns into each of twelve bins of the
 hemisphere.
@@ -33,8 +33,8 @@ def interface(w, alpha, ior, rng):
     # path, and whether the path is below the facets.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:
-        # The distance to the next facet depends on Lambda, which is negative downwards:
-        # [Heitz2016].
+        # By [Heitz2016], the distance to the next facet depends on Lambda, which is negative for
+        # directions downwards.
         tangent2 = (1.0 - d[:, 2] ** 2) / np.maximum(d[:, 2] ** 2, 1e-12)
         root = np.sqrt(1.0 + alpha**2 * tangent2)
         Lambda = np.maximum(0.5 * (np.where(d[:, 2] > 0.0, root, -root) - 1.0), -1e9)
@@ -107,7 +107,7 @@ def model_bins(mu, *inputs):
 
 
 def rows(paths=PATHS):
-    """Each case has albedos of layer, varnished and walk, (3, 5), and ratios of bins, (12, 4)."""
+    """Yield albedos of both models and the walk, (3, 5), and ratios of bins, (12, 4), by case."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
         total, out = walk(mu, *inputs, paths)

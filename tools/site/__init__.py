@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scripts that write pages of docs/. Each measured page has a separate command.
 
-| command | what it writes |
+| command (`...`: as in the first row) | what it writes |
 |---|---|
 | `python -m tools.site` | OSL versions of GLSL files, and tables that need no engine, in a minute |
 | `... specification` | table of results.md, measured on gl in some seconds |

@@ -36,7 +36,7 @@ def page(text):
     exceptions = [
         f"`{name.rpartition('.')[2]}`"
         for name, each in functions
-        if inspect.unwrap(each) is each  # functions for arrays of any library are wrapped
+        if inspect.unwrap(each) is each  # a function that accepts arrays of any library is wrapped
     ]
     line = (
         "Every public function of arrays in `mxeon.models` takes them, and\nhas gradients with respect to every argument of the type `ArrayLike`. "

@@ -137,7 +137,7 @@ def label(image, place, text, size=22, anchor="ls"):
 
 
 def save(path, pictures, difference_map):
-    """Save pictures side by side, with the difference as an inset. A pair is labeled."""
+    """Save pictures side by side, labeled if there are two. The difference is an inset."""
     image = Image.new("RGB", (SIZE * len(pictures), SIZE))
     for number, each in enumerate(pictures):
         image.paste(each, (number * SIZE, 0))

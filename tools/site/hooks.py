@@ -55,7 +55,7 @@ def on_page_content(html, page, **_):
 
 
 def _halves(found):
-    """HTML of the two halves of a picture, stock and eonlib. Other pictures are unchanged."""
+    """HTML that splits a picture of stock and eonlib. HTML of any other picture is unchanged."""
     width, height = Image.open(ROOT / "docs" / found[2]).size
     if width != 2 * height:
         return found[0]

@@ -73,7 +73,7 @@ LOSSES = {
 
 
 def loss_errors(mu):
-    """Errors of 1 - E in each formula, by name, and the exact 1 - E."""
+    """Error of each formula for 1 - E, by name, and the exact 1 - E."""
     exact = fon_loss(np.float64(mu)) / (1.0 + C1)
     return {name: np.float64(each(mu)) - exact for name, each in LOSSES.items()}, exact
 
@@ -175,7 +175,7 @@ def energy_rows():
     )
     around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views in the planes of tangent and bitangent
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
-    compensated = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # an IOR of 0 reflects all light
+    compensated = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # IOR 0 means total reflection
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", compensated
     stretched = models.ggx_albedo_dir_anisotropic(around, [0.001, 1.0])
     yield "alpha 0.001 and 1", "masking by direction, as corrected in July 2026", stretched

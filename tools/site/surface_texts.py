@@ -106,7 +106,7 @@ def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
 
 
 def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
-    """Results by subject and host, and verdicts by subject and by host or MaterialX version."""
+    """Results by subject and host, and a verdict for each subject and each host or version."""
     results: dict[str, dict[str, Result]] = defaultdict(dict)
     verdicts: Verdicts = defaultdict(dict)
     for host in HOSTS:

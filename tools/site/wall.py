@@ -122,7 +122,7 @@ def cause_of(result: Result) -> str:
 
 
 def wrapped(text: str) -> str:
-    """HTML of a text that permits line breaks after underscores."""
+    """Convert a text to HTML in which lines may break after underscores."""
     return text.replace("_", "_<wbr>")
 
 
@@ -171,7 +171,7 @@ class Wall:
         self.hosts: dict[str, str] = {}
         self.references: dict[tuple[str, str, str], Path] = {}  # keys: document, element and scene
         self.images: dict[Names, Path] = {}
-        self.facets: dict[Names, Path] = {}  # polyhedral references
+        self.facets: dict[Names, Path] = {}  # references for hosts that draw shapes as polyhedra
         self.results: dict[tuple[str, str, str], Result] = {}  # keys: subject, host and library
         for folder in folders:
             report = read_results(folder)
@@ -206,7 +206,7 @@ class Wall:
         return Tile(host, variant, scene, image, found, cause_of(judged), judged.verdict)
 
     def section(self, material: tuple[str, str]) -> tuple[float, str]:
-        """Largest difference of a material, and the section of the page about the material."""
+        """Largest difference of a material, and the section about the material on the page."""
         document, element = material
         references = {scene: pixels(self.references[(*material, scene)]) for scene in LIGHTS}
         if max(map(np.mean, references.values())) < BLACK:

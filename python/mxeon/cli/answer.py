@@ -46,7 +46,7 @@ LONGEST = {"material": 4, "node": 4, "cause": 3, "note": 2}
 REASONS = 3  # maximum number of listed reasons why checks did not run
 UNBOUNDED = 1e3  # larger errors are described in words
 ABBREVIATION = re.compile(r"\(([A-Z]+)\)$")  # matches the end of a model's title
-QUOTED_PATH = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # matches text that differs between documents
+QUOTED_PATH = re.compile(r"'[^']*/[^']*'|\"[^\"]*\"")  # quoted paths, which differ by document
 REFUSED = "refused"
 NO_REFERENCE = "no reference"
 # States of a document. If several states apply, the first state in this order counts.
@@ -64,7 +64,7 @@ def show_run(
     """Write a run's report, print its summary, and return the exit status.
 
     Errors of documents that are in `printed` are not printed again. With a baseline, changes
-    determine the status instead of failures, but a refused document still counts as misuse.
+    instead of failures determine the status, but a refused document still counts as misuse.
     """
     from mxeon import report
     from mxeon.report import diff
@@ -133,7 +133,7 @@ def answer(run: Run, full: bool = False) -> list[Line]:
     lines += map(_line, (*words.origins(run), *words.not_judged(run)))
     omitted = []
     for name, section in sections.items():
-        # Each of several documents has a line.
+        # If there are several documents, each document has a line.
         complete = full or (name == "material" and len(run.contents) != 1)
         lines += section if complete else section[: LONGEST[name]]
         if not complete and len(section) > LONGEST[name]:
@@ -201,7 +201,7 @@ def _document_states(run: Run) -> Iterator[DocumentState]:
             )
     for document, (fault, *others) in run.refused.items():
         if not fault.startswith(f"{document}: "):
-            document = document.rpartition(" with ")[0]  # refused with a single library
+            document = document.rpartition(" with ")[0]  # " with " precedes the name of a library
         more = f"; {counted(len(others), 'more fault')}" if others else ""
         cause = QUOTED_PATH.sub("...", fault.removeprefix(f"{document}: ") + more)
         yield DocumentState(document, "", REFUSED, cause)
@@ -369,7 +369,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
 
 
 def model_of(title: str) -> str:
-    """Title, or abbreviation, of the model that the node with this title must have."""
+    """Abbreviation, or else title, of the model that a node must have; `title` names the node."""
     spec = next(row for row in ALL if row.title == title)
     models = spec.value_candidates if isinstance(spec, ValueSpec) else ()
     name = models[0].title if models else "as specified"

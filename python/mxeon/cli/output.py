@@ -39,7 +39,7 @@ def open_streams() -> None:
 
 
 def flush(status: int) -> int:
-    """Flush the output. Return the exit status, or that of misuse if the output is not writable."""
+    """Flush the output. Return `status`, or the status for misuse if the output is not writable."""
     try:
         if sys.stdout:
             sys.stdout.flush()

@@ -226,7 +226,7 @@ def _by_effect(
         words = name.split("_")
         stems = ["_".join(words[:count]) for count in range(1, len(words))]
         gates = {"weight", *stems, *(f"{stem}_weight" for stem in stems)} - {name}
-        unused = name == "default" and f"{node}/file" in values  # color used for a missing image
+        unused = name == "default" and f"{node}/file" in values  # color if the image is missing
         if unused or any(values.get(f"{node}/{gate}") == 0.0 for gate in gates):
             return 2
         return 0 if document.getDescendant(port.path) else 1
@@ -259,7 +259,7 @@ def _port(shader: Shader, port: Input) -> data.ShaderInput:
 
 
 def _first_number(texts: Iterable[str]) -> float | None:
-    """The first component of the first text that begins with a finite number."""
+    """The number at the start of the first text that starts with a finite number."""
     for text in texts:
         with suppress(ValueError):
             if math.isfinite(value := float(text.split(",")[0])):

@@ -104,7 +104,7 @@ def _forms(spec: PbrSpec, shader: Shader) -> Iterator[ShaderForm]:
 
 
 def _batches(spec: PbrSpec, shader: Shader) -> tuple[Batch, Batch]:
-    """All pairs and all views as batches, with the inputs of a shader that has a single node."""
+    """A batch of all pairs and a batch of all views, both with the inputs of a one-node shader."""
     values = {port.path.rpartition("/")[2]: np.asarray(port.value) for port in shader.inputs}
     inputs = {name: values[name] for name in (*spec.row.inputs, "weight") if name in values}
     return Batch(WO, WI, inputs), Batch(SEEN, SEEN, inputs)

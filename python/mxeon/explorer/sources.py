@@ -174,7 +174,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
     }
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
-    # The page knows permitted forms of single lobes only, so `mxeon check` judges combinations.
+    # Only single lobes have references with permitted forms, so `mxeon check` judges the rest.
     several = reference and not reference.forms and OREN_NAYAR not in material.text
     judged = LIBRARIES if several else ()
     with temporary_folder("mxeon-explore-") as folder:

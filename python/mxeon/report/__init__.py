@@ -128,7 +128,7 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
         words = (document, picture.element, picture.host, picture.library, picture.scene)
         name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
         uses[name.lower()] += 1
-        # Only numbered names have a sixth word, so numbered names cannot equal other names.
+        # Names without a number have five words, so no such name equals a numbered name.
         names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
     return tuple(names)
 
@@ -159,7 +159,7 @@ def write(run: Run, folder: str | PathLike[str]) -> Path:
     ):
         for _ in written:
             pass
-    # The page links to these files if the address of mxeon's documentation is unknown.
+    # The report links to these Markdown files if the documentation's address is unknown.
     for issue in {each for one in run.results for each in issues_of(one)}:
         write_text(below(folder, f"{PAGES}/{issue.page}.md"), issue.text)
     with (
@@ -213,7 +213,7 @@ def html(run: Run) -> Generator[str, None, None]:
 
 
 def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    """The given pictures, followed by each picture's reference unless it is already included."""
+    """The given pictures, followed by those of their references that are not among the pictures."""
     known = {_subject(each) for each in pictures if each.host == REFERENCE}
     added = []
     for picture in pictures:

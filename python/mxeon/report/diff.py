@@ -335,7 +335,7 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
     if NOT_RUN in (old.verdict, new.verdict):
         if old.verdict == new.verdict:
             return "", "", ()
-        # A failure that prevents this check has its own result, which is compared separately.
+        # If another failure prevents this check, the result of that failure is compared separately.
         if old.follows or new.follows:
             return OTHER, old.reason or new.reason, ()
         if new.verdict == NOT_RUN:
@@ -362,8 +362,8 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
 def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
     """Numbers that grew by more than noise. Numbers of all samples come first.
 
-    For results without samples, the number is the error. Growth below the tolerance is ignored,
-    because a check passes with such errors.
+    A result without samples has a single number, the error. If a number grows by less than the
+    tolerance, the growth is ignored.
     """
     margin = (new.tolerance or 0.0) + FUNCTIONS
     if not (old.errors and new.errors):
@@ -417,9 +417,9 @@ def _is_farther(old: Result, new: Result) -> bool:
 
 
 def _is_repaired(old: Result, new: Result) -> bool:
-    """Whether a known defect is gone, so that the right model is as near as the defect was.
+    """Whether a known defect is gone, because the right model is now the nearest model.
 
-    If the samples differ, an error that exceeds the size on the defect's page may be noise.
+    If the samples differ, an error above the size on the defect's page may be due to noise.
     """
     right = next(iter(new.diagnosis.distances.values()), math.inf)
     nearest = old.samples != new.samples or right == new.diagnosis.distance < math.inf

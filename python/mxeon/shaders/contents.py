@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that a document's materials use, including those in nodegraphs and surface shaders."""
+"""The nodes that a document's materials use, including nodes in nodegraphs and surface shaders."""
 
 import warnings
 from dataclasses import dataclass
@@ -25,8 +25,8 @@ class ShownNode:
     category: str
     type: str
     # Name and type of each input in the node's definition. An input of a closure type is listed
-    # only if a node that may emit light is connected, and is then listed again with the category of
-    # the connected node; the category is "" unless the node combines lobes.
+    # only if the connected node may emit light. A second entry has the category of the connected
+    # node, or "" if this node does not combine lobes.
     inputs: tuple[tuple[str, str], ...] = ()
     # Name and value of each constant input that selects a mode.
     modes: tuple[tuple[str, str], ...] = ()

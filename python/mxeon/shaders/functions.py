@@ -123,7 +123,7 @@ def dispatched(text: str, functions: Iterable[str], language: str) -> str:
 
     So a host compiles one program for all functions. The first parameter of the dispatcher is the
     number of the function, as a float. For each type, the dispatcher has as many parameters as any
-    of the functions has. A function receives the first of the dispatcher's parameters of each type.
+    of the functions has. A function with n parameters of a type receives the first n values.
     """
     known, types = signatures(text), TYPES[language]
     slots = {kind: 0 for kind in types}

@@ -306,7 +306,7 @@ def check_generator(library: str, target: str) -> None:
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
-    """Inputs of a shader. An input of a node that the generator adds has its name as path."""
+    """Inputs of a shader. If the generator added an input's node, the input's name is the path."""
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares uniforms as inputs
     return tuple(

@@ -4,8 +4,8 @@
 MaterialX silently ignores later definitions of a name, so eonlib is loaded before the standard
 libraries. `assert_eonlib` then checks which implementations MaterialX chooses.
 
-No version of MaterialX is refused because of its number. Instead, mxeon checks that the methods it
-needs exist, and that generated code calls closures as eonlib's sources define them.
+No version of MaterialX is refused because of its number. Instead, mxeon checks that the methods in
+REQUIRED exist, and that generated code calls closures as eonlib's sources define them.
 """
 
 import os

@@ -78,7 +78,7 @@ def _tree(folder: str) -> Tree:
         }
     else:
         # Reject a source that has the name of a MaterialX source but lies elsewhere, because
-        # MaterialX would not use the source. A path that ends in libraries/ and MaterialX's path is
+        # MaterialX would not use the source. MaterialX's path after a folder `libraries` is
         # permitted, because a search path can lead to the source.
         known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
         for each in recognized:
@@ -240,7 +240,7 @@ def _include(
     document: mx.Document,
     name: mx.FilePath,
     path: mx.FileSearchPath,
-    options: mx.XmlReadOptions,  # includes the list of all including documents
+    options: mx.XmlReadOptions,  # also lists all including documents
 ) -> None:
     file = path.find(name)
     _text(file.asString())

@@ -94,7 +94,7 @@ STORM = Methods("prefilter", "opacity", "analytic", 2)  # methods of USD in mate
 # Match the declarations of methods in generated text.
 ALBEDO = re.compile(r"^#define DIRECTIONAL_ALBEDO_METHOD (\d+)$", re.MULTILINE)
 ITERATIONS = re.compile(r"^#define AIRY_FRESNEL_ITERATIONS (\d+)$", re.MULTILINE)
-REFRACTS = re.compile(r"if \((\w*refractionTwoSided)\)")  # this test only occurs with refraction
+REFRACTS = re.compile(r"if \((\w*refractionTwoSided)\)")  # only refraction has this test
 
 
 def assert_generated(text: str, methods: Methods) -> None:

@@ -30,7 +30,7 @@ INPUT_TYPES = {
     FLAG: "boolean",
 }
 
-# The other BSDF nodes of pbrlib. MaterialX's definitions supply the inputs of these nodes.
+# BSDF nodes of pbrlib that are not rough diffuse. MaterialX's definitions list the inputs.
 BSDF_NODES = (
     "burley_diffuse_bsdf",
     "dielectric_bsdf",

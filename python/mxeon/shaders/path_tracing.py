@@ -95,7 +95,7 @@ def own_text(name: str, library: str, slang: bool) -> str:
 
 
 def thin_walled(element: mx.TypedElement) -> str:
-    """A GLSL literal, true if a surface is thin-walled. Computed values count as false."""
+    """Whether a surface is thin-walled, as "true" or "false". Computed values count as false."""
     shaders = mx.getShaderNodes(element) if element.getType() == "material" else [element]
     nodes = [each for each in shaders if isinstance(each, mx.Node)]
     names = ("thin_walled", "geometry_thin_walled")

@@ -33,7 +33,7 @@ class Mutant:
     reason: str  # why the change is wrong, or why the change is equivalent
     host: str  # cheapest host that can detect the mutant; "text" if no host is needed
     equivalent: bool  # whether values stay the same on the whole valid domain
-    survives: bool  # whether no check detects the mutant, as `reason` explains
+    survives: bool  # whether the mutant is known to pass all checks; `reason` says why
     tests: tuple[str, ...] = ()  # test files to run first on a wrong reference
     operator: str = ""  # name of the operator that made the mutant
     place: tuple[int, int] = (0, 0)  # start and end of the operator's match in the file

@@ -14,8 +14,8 @@ from tools.benchmarks.mutants.mutant import ROOT, Mutant, read_table
 GROUP = "Operators"
 SURVIVORS = Path(__file__).with_name("survivors.toml")  # known undetected mutants
 FOLDERS = ("genglsl", "genosl")
-# Programs with many mutants do not compile environment lookups, so the table has mutants of the
-# lookups.
+# Programs with many mutants do not compile environment lookups, so files in `table/` have the
+# mutants of these lookups.
 ENVIRONMENT = "genglsl/environment/"
 UNCOMPILED = r"^#ifdef (?:EONLIB_PREFILTERED|MX_REFRACTION_UNMASKED)\b.*?(?=^#e)"
 COMMENT = re.compile(

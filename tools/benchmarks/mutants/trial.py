@@ -43,7 +43,7 @@ PATH = "genglsl/path/"  # folder of code for path tracers, which no check runs
 # folders, the tests run after the checks, because no check can detect some of the mutants.
 FOLDER_TESTS = {
     PATH: ("tests/shaders/test_path_tracing.py",),
-    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # run in Blender's OSL
+    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # this test runs Blender's OSL
     operators.ENVIRONMENT: (
         "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
         "tests/hosts/test_document_hosts.py::"
@@ -136,7 +136,7 @@ def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
     return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
 
 
-_original_failures = cache(_failed)  # cached, since eonlib itself is not mutated
+_original_failures = cache(_failed)  # the original does not change
 
 
 # --- tasks of a library ---------------------------------------------------------------------------
@@ -299,4 +299,4 @@ def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     return test or "import", f"{file}: {message}" if message else file
 
 
-_original_failure = cache(_failure)  # cached, since this package is not mutated
+_original_failure = cache(_failure)  # the original does not change

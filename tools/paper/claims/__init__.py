@@ -44,7 +44,7 @@ class Section:
         least: float = -np.inf,
         most: float | None = None,
     ) -> Callable[[Measure], Measure]:
-        """Decorator for a measurement with values in [least, most], by default up to ROUNDING."""
+        """Decorator for measurements. The claim is that all values are in [least, most]."""
         top = most if most is not None else ROUNDING if least == -np.inf else np.inf
         limit = f"in [{least:.3g}, {top:.3g}]"
         if not np.isfinite(top):

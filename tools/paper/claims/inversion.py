@@ -29,7 +29,7 @@ def _listed(errors: dict[float, float]) -> str:
 
 
 def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
-    """A sentence about the largest error of C + slope (zero - C) C r, and the largest error."""
+    """Largest error of C + slope (zero - C) C r, as a sentence and as a number."""
     error = np.abs(COLORS + slope * (zero - COLORS) * COLORS * ROUGHNESS[:, np.newaxis] - exact)
     row, column = np.unravel_index(error.argmax(), error.shape)
     place = f"at r = {ROUGHNESS[row]:g}, C = {COLORS[column]:.2f}"
@@ -55,7 +55,7 @@ def printed_root() -> Measured:
 
 @claim("below Eq. (31)", "a series serves at low roughness", "error up to r = 0.1", most=STATED)
 def taylor() -> Measured:
-    """Errors of the series below Eq. (31). Only errors up to roughness 0.1 must be small."""
+    """Errors of the series that follows Eq. (31), which must be small up to roughness 0.1."""
     errors = {}
     for r in (0.01, 0.1, 1.0):
         A, B = _quadratic(r)

@@ -59,7 +59,7 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
     for file, part in re.findall(whole_file, patch, re.MULTILINE):
         for run in re.findall(r"^(?: .*\n)?(?:[+-].*\n)+(?: .*\n)?", part, re.MULTILINE):
             lines = run.splitlines(keepends=True)
-            if {line[0] for line in lines} >= {"+", "-"}:  # no context needed for a replacement
+            if {line[0] for line in lines} >= {"+", "-"}:  # a replacement needs no context
                 lines = [line for line in lines if line[0] != " "]
             old, new = ("".join(line[1:] for line in lines if line[0] != sign) for sign in "+-")
             changes.append((file, old, new))
@@ -115,7 +115,7 @@ def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
 
     `strip` is the number of leading path components that are dropped.
     """
-    # Make git ignore repositories that contain the folder, and the machine's configuration.
+    # Make git ignore the machine's configuration and any repository around the folder.
     alone = {"GIT_CEILING_DIRECTORIES": str(folder.resolve().parent), "GIT_CONFIG_NOSYSTEM": "1"}
     env = os.environ | alone
     command = ["git", "-c", "core.autocrlf=false", "apply", "--unidiff-zero", f"-p{strip}", "-"]

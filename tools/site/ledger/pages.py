@@ -14,7 +14,7 @@ from mxeon.conformance.results.quantities import Quantity
 from tools.site.ledger import ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
-PLACEHOLDER = re.compile(r"<!-- patches (\S+) -->")  # replaced by a project's table
+PLACEHOLDER = re.compile(r"<!-- patches (\S+) -->")  # a table of patches replaces this comment
 LINES = 20  # largest number of changed lines in a diff on a page
 # Headings of the groups of pages in the index, by name of the group.
 GROUPS = {

@@ -21,7 +21,7 @@ Port = dict[str, object]  # types, default and accepted values of a port, by KEY
 
 
 def printed(text: str) -> dict[str, dict[str, Port]]:
-    """Ports by node and name, from all tables of a text in which the first column is Port."""
+    """Ports by node and name, from all tables whose first column is Port."""
     nodes: dict[str, dict[str, Port]] = {}
     node, columns = "", []
     for line in text.splitlines():

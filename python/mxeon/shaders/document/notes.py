@@ -37,7 +37,7 @@ class CodeWarning(UserWarning):
 
 
 class MissingFileWarning(DocumentError, UserWarning):
-    """A shader names files that do not exist. Code that must read the files raises the warning."""
+    """A shader names files that do not exist, which is an error for code that reads the files."""
 
 
 def numbers(element: mx.ValueElement) -> tuple[float, ...]:

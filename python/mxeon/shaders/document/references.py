@@ -172,7 +172,7 @@ def _text(path: str, policy: Policy) -> str:
 
 
 def _names(text: str) -> Iterator[tuple[str, str]]:
-    """Keys and values of attributes that may name files, without and with each prefix."""
+    """Keys and values of attributes that may name files, also with every `fileprefix`."""
     found = dict.fromkeys(
         (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
@@ -229,7 +229,7 @@ def files_read(
 
 
 def _library_files(library: str) -> Iterator[str]:
-    """Documents and sources in the folders of a library, and the files that these include."""
+    """Documents and sources in the folders of a library, and all files that the sources include."""
     for folder in library_folders(library):
         profiles = (folder / profile for profile in PROFILES)  # folders of documents (*.xml)
         names = [path for _, path in files_in(str(folder)) if path.endswith(FILES)]
