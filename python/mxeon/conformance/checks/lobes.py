@@ -62,7 +62,7 @@ def of_model(*names: str) -> Specs:
 FILMS, TRANSMITTING = family(FilmSpec), family(TransmissionSpec)
 CLEAR = family(TransmissionSpec, lambda spec: spec.reflects)  # nodes that transmit and reflect
 DARK = TRANSMITTING - CLEAR  # nodes that transmit but do not reflect
-# Nodes without a tint, which pass all light if transmission is rendered as opacity.
+# Nodes that have no tint, and therefore pass all light if opacity replaces refraction.
 UNTINTED = DARK - family(LobeSpec, lambda spec: "tint" in colored(spec))
 COMBINED, SUBSURFACE = family(CombinedSpec), family(SubsurfaceSpec)
 FACETS, BELOW = family(FacetSpec), family(SurfaceLobe)

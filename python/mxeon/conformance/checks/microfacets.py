@@ -94,7 +94,7 @@ def dark(case: Case) -> Compared:
 
 
 def raised(batch: Batch, index: float, color82: float) -> Batch:
-    """Raise the IOR of dielectrics and color82 to a minimum.
+    """Raise color82, and the IOR of dielectrics, to minimum values.
 
     In float32, the terms of a Fresnel curve cancel if the IOR is near 1, or if the curve has a deep
     dip at 82 degrees.
@@ -658,8 +658,8 @@ def film_factors(
 ) -> tuple[Array, Array]:
     """F (1 + F_ss k) and k of films for lights in the mirror direction, (N, 3) each.
 
-    Values are divided by the single scattering of perfectly reflecting facets. For a perfect mirror
-    with F = F_ss = 1, the quotient is 1 + k.
+    Values are divided by the single scattering of perfectly reflecting facets. So a perfect mirror,
+    for which F = F_ss = 1, has the divided value 1 + k.
     """
     alpha = np.broadcast_to(alpha, len(batch.wo))
     batch = batch.altered(roughness=np.stack([alpha, alpha], axis=1))

@@ -52,7 +52,7 @@ def outside(case: Case) -> Compared:
 
 
 def diagnose_finite(case: Case) -> Diagnosis:
-    """Report the number of non-finite outputs, and an input range that contains these outputs."""
+    """Report the number of non-finite outputs, and an input range that causes such outputs."""
     compared = [unbounded(outside(case))]
     cause = correct_except(compared, EXACT, span(compared, EXACT))
     return Diagnosis((replace(cause, kind=Kind.NOT_FINITE),))

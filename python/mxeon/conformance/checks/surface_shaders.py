@@ -115,7 +115,7 @@ def glass(case: Case) -> Iterator[Compared]:
 
 
 def unexpected(case: Case) -> list[str]:
-    """Inputs with an effect that should have no effect, and inputs that wrongly have no effect."""
+    """Inputs that wrongly have an effect, and inputs that wrongly have no effect."""
     wrong = expected_dead(case).symmetric_difference(without_effect(case))
     return sorted(wrong.difference(case.backend.unset))
 

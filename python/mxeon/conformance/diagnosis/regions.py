@@ -117,7 +117,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
 
 
 def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
-    """Parts of an input for which a range is sought, each a key of `words.PARTS` with numbers.
+    """Parts of an input for which a range is sought: keys of `words.PARTS`, each with numbers.
 
     - `wrong`: Mask of the color channels with wrong values.
     """

@@ -273,7 +273,7 @@ class Graph(Nodes):
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
-        if declared and declared.hasDefaultGeomPropString():  # the only source is this property
+        if declared and declared.hasDefaultGeomPropString():  # use the default property
             return self._points.geometry(declared.getDefaultGeomPropString())
         value = port.getValue()
         if value is None and declared:  # MaterialX ignores an unresolved connection

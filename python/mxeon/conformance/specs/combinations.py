@@ -78,7 +78,7 @@ class CombinedSpec(PbrSpec):
     """A node that combines lobes of weight 1."""
 
     requires = spec.Ability.LOBE | spec.Ability.COMBINATION
-    # If several nodes use a lobe, MaterialX applies a connected mix weight to every use.
+    # If several nodes use a lobe, MaterialX scales the lobe in all nodes by a connected mix weight.
     plain = ("lobes", "inputs from an image")
 
     def batches(self, counts: samples.Counts) -> tuple[samples.Batch, ...]:

@@ -75,7 +75,7 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseModelSpec(ScatteringSpec):
-    """A node or lobe with a rough diffuse model; by default, a renderer's own node."""
+    """A node or a lobe with a rough diffuse model. The default is a node defined by a renderer."""
 
     requires = Ability.OWN
 

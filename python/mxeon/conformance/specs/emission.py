@@ -189,9 +189,9 @@ class ConeSpec(EmissionSpec):
         return *super().batches(counts), _without_edges(near), _without_edges(turned)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by 1 plus the largest slope of the falloff near the cosine of the view.
+        """Divide values by the sum of 1 and the falloff's largest slope near the view's cosine.
 
-        A cosine is near if the difference is at most CONE_ROUNDINGS roundings.
+        Cosines are near up to a difference of CONE_ROUNDINGS roundings.
         """
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))

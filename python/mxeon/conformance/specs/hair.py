@@ -23,7 +23,7 @@ from mxeon.models.nodes.node import Scattering
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
 LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
 WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrated lobes
-# Fraction of the light that comes from the viewer's side, for R, TT, TRT, and all higher orders.
+# Share of light that comes from the viewer's side: for R, for TT, for TRT, and for higher orders.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])
 STEP = 1e-6  # step of an angle, in radians, for finite differences
 LEAST = 0.01  # errors are relative to the larger of this number and the value

@@ -495,7 +495,7 @@ FILM_ALBEDO = sum_in(
 # A metal with a lower IOR than the film reflects totally, and three cosines do not resolve fringes.
 FILM_TRAPPED = single(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
-# Pictures weight errors by the view's cosine.
+# In a picture, the error at a view has the view's cosine as a weight.
 FILM_SHOWN = sum_in(
     Quantity.PICTURE,
     Term(2.59e-2, "FILM_ALBEDO's, times the cosine"),

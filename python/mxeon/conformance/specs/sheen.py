@@ -46,7 +46,7 @@ CONTY_KULLA_ALBEDO = sum_in(Quantity.ALBEDO, *FIT, exact=True)
 def power_error(host: Host) -> float:
     """Error of Conty and Kulla's sheen due to the engine's pow(), minus the roundings of LOGARITHM.
 
-    With n = 1 / roughness, pi f cos is at most (2 + n) / 8 sin^n. Errors of values above 1 are
+    With n = 1 / roughness, pi f cos is at most (2 + n) sin^n / 8. Errors of values above 1 are
     relative errors.
     """
     rng = samples.generator()

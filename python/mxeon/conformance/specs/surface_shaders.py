@@ -52,7 +52,7 @@ def _ones(names: str) -> Values:
     return {name: WHITE if "color" in name.lower() else 1.0 for name in names.split()}
 
 
-LIGHT_ALPHA = 0.3  # alpha of the GGX lobe that draws half of the light directions
+LIGHT_ALPHA = 0.3  # alpha of the GGX lobe from which half of the light directions are sampled
 # tools/fits/surface_shaders.py measures the errors that the fits of all lobes cause in a shader. An
 # error is the largest deviation from the layer equation in float64, over 32 sets of a check's size.
 # The error is a third of the sum of the largest errors of all lobes, because no material has the
