@@ -24,7 +24,7 @@ float chiang_hair_bessel(float x)
           + t * (-0.01647633 + t * 0.00392377)))))))) / sqrt(x);
 }
 
-// Norm of M_p for variance v, 2 v sinh(1 / v) exp(-1 / v). If v >= 1, sinh is a series. Relative
+// Norm 2 v sinh(1 / v) exp(-1 / v) of M_p for variance v. If v >= 1, sinh is a series. Relative
 // error: 3e-8.
 float chiang_hair_norm(float v)
 {
@@ -138,7 +138,7 @@ vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughne
 {
     ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
 
-    // Inclination of the light, tilted for the lobe R, and azimuth of the light from R's center.
+    // The light's inclination, tilted for the lobe R, and azimuth, measured from R's center.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));

@@ -7,8 +7,8 @@
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
 // Section Spectral Sensitivity: two Gaussians for X, one for Y, one for Z. Positions are mu_k in
-// 1/m. Variances are sigma_k^2 in 1/m^2, the smallest first. Heights are v_k sqrt(2 pi sigma_k^2) /
-// 1.0685e-7. Rec. 709 is adapted from white E by Bradford's method.
+// 1/m. Variances are sigma_k^2 in 1/m^2 (the first is the least). Heights are v_k sqrt(2 pi
+// sigma_k^2) / 1.0685e-7. Colors in Rec. 709 are adapted from white E by Bradford's method.
 #define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 #define THIN_FILM_HEIGHTS vec4(0.84659, 0.15386831, 1.0002219, 1.0011225)
@@ -16,7 +16,7 @@
 #define THIN_FILM_COLOR_Y vec3(-1.666124, 1.9557635, -0.2145965)
 #define THIN_FILM_COLOR_Z vec3(-0.4801271, 0.0397715, 1.1509987)
 
-#define THIN_FILM_LEAST 1e-12  // least divisor, which avoids 0 / 0
+#define THIN_FILM_LEAST 1e-12  // avoids 0 / 0
 
 // The sum ends if a bound of the next term's square is at most VALUE times the squared mean
 // reflectance or WIDTH times the squared width of cosines. Each term multiplies the bound by at

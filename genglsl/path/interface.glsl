@@ -32,8 +32,8 @@ float material_pdf(Point p, vec3 wo, vec3 wi)
 }
 
 // Draws wi with random numbers u in [0, 1). `weight` is f cos(theta_i) / pdf. The result is false
-// if the path ends. If light passes straight through, wi is -wo and pdf is 0, since no other call
-// finds -wo.
+// if the path ends. If light passes straight on, wi is -wo and pdf is 0, since densities
+// exclude this light.
 bool material_sample(Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight, out float pdf)
 {
     wi = -wo;

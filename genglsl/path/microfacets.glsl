@@ -85,9 +85,9 @@ vec3 path_partner(MicrofacetLobe lobe)
     return path_world(vec3(flat_cap + wo.xy, max(z + wo.z, M_FLOAT_EPS)) * stretch, lobe.X, lobe.N);
 }
 
-// For wo in the denser medium, the lobe gets the albedo and averages of the outer direction into
+// If wo is in the denser medium, `lobe` gets the albedo and averages of the direction outside into
 // which path_facet refracts wo. Reflected light only needs a ratio of transmittances, for which any
-// outer direction is suitable.
+// direction outside is suitable.
 void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
 {
     bool below = dot(lobe.N, lobe.wi) < 0.0;
@@ -137,9 +137,9 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     return lobe;
 }
 
-// Density of wi for visible normals, in 1/sr. For reflection, the density is G_1 D / (4 mu_o). For
-// refraction, the Jacobian dh / dwi of the half vector h is n^2 |wi . h| / |wo + n wi|^2:
-// [Walter2007], Eq. (17).
+// Density of wi in 1/sr if visible normals are drawn. For reflection, the density is G_1 D / (4
+// mu_o). For refraction, the Jacobian dh / dwi of the half vector h is n^2 |wi . h| / |wo + n
+// wi|^2: [Walter2007], Eq. (17).
 float path_facet_pdf(MicrofacetLobe lobe, bool through)
 {
     if ((dot(lobe.N, lobe.wi) < 0.0) != through)

@@ -33,7 +33,7 @@
 #define EON_ROOT4 0.0001101024
 #define EON_ROOT5 -0.0008543250
 
-// Weight of multiple scattering for a gray rho: eon_multiple_ratio.
+// Weight eon_multiple_ratio of multiple scattering for a gray rho.
 float eon_gray_ratio(float rho, float roughness)
 {
     float weight = roughness * (1.0 + EON_C2 * roughness) * (1.0 / EON_LOSS_AVG);

@@ -131,7 +131,7 @@ vec3 qon_footnote_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return 1.0 / EON_PI * (A + qon_bq(sigma) * quotient) * rho;
 }
 
-// BRDF of [Fujii2013], first formula: B_q of QON, s / t of FON, and an A that grows with rho.
+// BRDF of [Fujii2013], first formula, with B_q of QON, s / t of FON and A growing with rho.
 vec3 qon_fujii_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
 {
     float quotient = fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));
