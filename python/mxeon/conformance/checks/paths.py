@@ -292,7 +292,7 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
 
     Each row has the deviation in standard deviations, whether the view is inside a solid, and a
     batch with the view and the material. A surface shader has three views of a solid and of a thin
-    wall. A deliberately wrong case has three views in all, because the first failure is enough.
+    wall. A deliberately wrong case also has three views, because the first failure is enough.
     Quadratures with few nodes cannot hide a failure, because errors increase the deviation.
     """
     u = random(DRAWS, generator())
