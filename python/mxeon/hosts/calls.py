@@ -63,8 +63,8 @@ def prelude(text: str, end: int) -> Prelude | None:
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# Closure type of the call that a host repeats, and first step of the evaluation, by branch. Shaders
-# call BSDFs without transmission only in the first two branches.
+# Closure type of a call, and first step of the evaluation loop, for each branch. Only in the first
+# two branches, shaders also call BSDFs that do not transmit light.
 CLOSURES = {
     "direct": ("CLOSURE_TYPE_REFLECTION", 1),
     "environment": ("CLOSURE_TYPE_INDIRECT", 2),
@@ -158,7 +158,7 @@ def bsdf_call(query: Query) -> BsdfCall:
             arguments.setdefault(name, (kind, inputs.get(name, cast(ArrayLike, default))))
     else:
         ports = _ports(shader)
-        # Statements by which nodes compute a closure's inputs, without geometric properties.
+        # Statements that compute a closure's inputs from nodes, without geometric properties.
         computed = GEOMETRY.sub("", _main(text) + "\n")
         if any(f" {name} = " in computed for name in names):
             names = [name for name in names if f" {name} = " not in computed]

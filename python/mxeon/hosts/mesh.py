@@ -18,7 +18,7 @@ from mxeon.shaders.scene import VisiblePoints
 from mxeon.shaders.shader_ball import GROUND, NEAR, OBJECT
 
 SIZE = 1.9  # diagonal of the box around a mesh, in a frame of width 2
-OFFSET = 1e-4  # distance of a ray's origin from the surface that it leaves
+OFFSET = 1e-4  # distance of a ray's origin from the surface that the ray leaves
 
 
 @lru_cache(maxsize=2)

@@ -38,7 +38,7 @@ MODELS = ("surface", "surface_unlit")  # surfaces with a tree of closures or onl
 SKIPPED = ": not evaluated"  # end of shadewire's comment on a lobe that stays black
 EMITTED = "shadewire_eval_emission(surface, V, N)"
 BSDF = "shadewire_eval_bsdf(surface, L, V, N)"
-# Expressions of the response by branch. In some branches, the response of shadewire's BSDFs is 0.
+# Expression of the response for each branch. Two branches have no response in shadewire.
 RESPONSES = {
     "direct": f"{BSDF}.response",
     "environment": "shadewire_eval_albedo(surface, V, N)",
@@ -46,7 +46,7 @@ RESPONSES = {
     "emission": "vec3(0.0)",
     GRAPH: EMITTED,
 }
-# Expressions of outputs that do not depend on the branch.
+# Expressions of the outputs that are the same in all branches.
 OUTPUTS = {"throughput": f"{BSDF}.throughput", "radiance": EMITTED}
 FRAME = """vec3 host_normal, host_tangent;
 vec3 shadewire_host_normal_world() { return host_normal; }
@@ -56,7 +56,7 @@ vec3 shadewire_host_bitangent_world() { return cross(host_normal, host_tangent);
 PROPERTY = "{0} host_{1};\n{0} shadewire_host_geomprop_{1}() {{ return host_{1}; }}\n"
 TYPES = {"float": "float", "boolean": "bool", "integer": "int", "vector2": "vec2"}  # else vec3
 
-Properties: TypeAlias = Mapping[str, tuple[str, str]]  # key and type of an input, by property
+Properties: TypeAlias = Mapping[str, tuple[str, str]]  # property: key and type of an input
 
 
 class ShadewireHost(base.Host):

@@ -164,7 +164,7 @@ def _is_complete(path: Path, pixels: Pixels | Codes) -> bool:
     import OpenImageIO as oiio
 
     if path.suffix.lower() == ".png" and not path.read_bytes().endswith(PNG_END):
-        return False  # libpng prints a message if it reads the file
+        return False  # libpng would print a message
     height, _, channels = pixels.shape
     file = oiio.ImageInput.open(str(path))
     last: NDArray[Any] | None = None

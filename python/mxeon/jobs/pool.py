@@ -126,7 +126,7 @@ def run(
     that results do not fill the memory. A worker prints to a file. A failure quotes the last lines
     of the file.
 
-    The processes end with the iterator. Close the iterator if an error may abandon it, because
+    The processes end with the iterator. A caller must close the iterator after an error, because
     garbage collection might run in a thread that must be joined, which would be a deadlock.
     """
     if workers < 1:
@@ -239,7 +239,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
     error = future.exception() if future.done() else TimeoutError()
     if error is None:
         return Outcome(future.result(), attempts=attempt.number)
-    raised = error.__cause__ is not None  # exceptions of the work have a cause, pebble's traceback
+    raised = error.__cause__ is not None  # pebble gives exceptions of the work a cause
     if raised and attempt.number == ATTEMPTS:
         log_bug(error)
     end = f"{type(error).__name__}: {error}" if raised else _end(error, timeout)

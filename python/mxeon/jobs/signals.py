@@ -25,9 +25,9 @@ ENDING = (*TERMINAL, signal.SIGTERM)
 OTHERS = _existing("SIGALRM", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 
 LOCK = ".lock"  # name of the lock file in a temporary folder
-YOUNG = 60.0  # younger folders (in seconds) may be in use without a lock
+YOUNG = 60.0  # seconds; a folder that is younger may be in use and not locked yet
 
-_pending: list[int] | None = None  # signals that arrived while they were blocked
+_pending: list[int] | None = None  # signals that arrived while signals were blocked
 
 
 class SignalExit(KeyboardInterrupt):
@@ -91,7 +91,7 @@ class Temporary(TemporaryDirectory[str]):
     """
 
     def __init__(self, prefix: str) -> None:
-        from filelock import FileLock  # this import takes a tenth of the command's start
+        from filelock import FileLock  # the import takes a tenth of a command's start time
 
         _remove_abandoned()
         super().__init__(prefix=prefix)

@@ -179,7 +179,7 @@ class Question:
 
 
 def control(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float64]]:
-    """A function for the values of a negative control: a model times a factor."""
+    """A function that returns the values of a model times a factor, for a negative control."""
     return lambda view: factor * pixel_means(reference.diffuse_model(name), view)
 
 
@@ -288,7 +288,7 @@ def _tiles(
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the pictures' errors, plus the difference of `wrong` values from the model."""
+    """Tiles of the errors of pictures, to which the errors of the `wrong` values are added."""
     wrong = wrong or [model.value for model in models]
     found = []
     for view, model, other in zip(views, models, wrong, strict=True):

@@ -8,8 +8,8 @@ from mxeon.shaders.scene import BACK, FRONT, FURNACE, SIDE, Scene
 
 COLOR = (0.2, 0.5, 0.8)  # different channels reveal a wrong power of the color
 
-# Widths of pictures in pixels. In smaller pictures, corners of judged pixels may be outside the
-# sphere. Larger pictures have no advantage.
+# Widths of pictures in pixels. Below the smallest width, corners of judged pixels may be outside
+# the sphere. Widths above the largest width have no advantage.
 SMALLEST, USUAL, LARGEST = 64, 128, 2048
 
 

@@ -48,7 +48,7 @@ def vector(parts: Sequence[Array]) -> Array:
 
 
 def octave_cells(x: Array) -> tuple[Array, Array]:
-    """Index of the part that contains x, and (x - middle) / start of the octave."""
+    """Index of the part with x, and x minus the octave's middle, divided by the octave's start."""
     drjit = import_module("drjit")
     integer, single = drjit.uint32_array_t(type(x)), drjit.float32_array_t(type(x))
     x = drjit.maximum(x, 2.0**-OCTAVES)

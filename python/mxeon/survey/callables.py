@@ -70,7 +70,7 @@ class Function(backends.Backend):
 
     @cached_property
     def edges(self) -> Batch:
-        """Pairs for the check `finite`, at the edges of the domain and from all other checks."""
+        """Pairs for the check `finite`: edges of the domain, and the pairs of all other checks."""
         batches = [super().edges]
 
         def record(batch: Batch) -> Batch:

@@ -69,7 +69,7 @@ SURFACE_BOUNCES, REFRACTED_BOUNCES = 1, 8
 DARK = Scene("dark")  # a scene without light, to which a request may add a light
 # OSL expressions of a point's image coordinates on the body "plane".
 PLACE = "0.5 + 0.5 * P[0], 0.5 - 0.5 * P[1]"
-FEWEST_SAMPLES = 16  # minimum number for lobes below the surface, because of noise
+FEWEST_SAMPLES = 16  # minimum samples per pixel for lobes below the surface, which are noisy
 
 
 def request(scene: Scene, lobes: Sequence[str]) -> dict[str, Any]:

@@ -22,7 +22,7 @@ PAIRS = 2  # maximum number of keywords in a call of a closure
 
 @dataclass(frozen=True)
 class Signature:
-    """Arguments of a closure, as OSL's stdosl.h documents them."""
+    """Arguments of a closure according to OSL's stdosl.h."""
 
     arguments: Mapping[str, str]  # OSL types by name, in order
     keywords: tuple[str, ...]  # all keywords except `label`, which has no effect

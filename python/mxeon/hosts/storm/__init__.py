@@ -67,10 +67,10 @@ class StormHost(DocumentHost):
         return interpreter(self.name)
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether a shader has textures.
+        """Whether a shader has textures, so that triangles must cover blocks of 2 x 2 pixels.
 
-        In pixels outside a triangle, llvmpipe reads Storm's buffers as 0. The derivatives of
-        texture coordinates are then wrong, so textures are read at the wrong size.
+        For pixels of a block outside a triangle, llvmpipe reads Storm's buffers as 0. Derivatives
+        of texture coordinates are then wrong, so textures are read at the wrong size.
         """
         return any(each.type == "filename" and each.value for each in shader.inputs)
 
