@@ -67,11 +67,10 @@ class Backend(ABC):
     """A base class for evaluating one node on an engine."""
 
     abilities: ClassVar[Ability]  # supported kinds of nodes and checks
-    # Kinds of states in the check `states`, such as "lights", of which only the first state is
-    # supported.
+    # Kinds of states, such as "lights". The check `states` uses only the first state of each kind.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
-    fewer: ClassVar[Counts | None] = None  # replaces the counts of specs with more pairs
+    fewer: ClassVar[Counts | None] = None  # counts for specs that would draw more pairs
     engine_errors: ClassVar[Errors | None] = None  # replaces the errors of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
@@ -329,7 +328,7 @@ class Evaluating(Backend):
 
 
 class Media(Evaluating):
-    """A backend for media, and for nodes that are only checked to have an implementation."""
+    """A backend for media, and for nodes without values, which only need an implementation."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 
@@ -390,7 +389,7 @@ class Closures(Evaluating):
         return (random, *(batch.first(SOME) for batch in others))
 
     def adapted(self, batch: Batch) -> Batch:
-        """Clamp weights to 0, as OSL closures have no negative weights, and set some IORs to 0."""
+        """Replace negative weights by 0, as OSL does, and set some indices of refraction to 0."""
         changes: dict[str, Array] = {}
         if "weight" in batch.inputs:
             changes["weight"] = np.maximum(batch.inputs["weight"], 0.0)
@@ -436,13 +435,13 @@ class Closures(Evaluating):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Unsupported normals and tangents of a surface shader's lobes, which share a frame."""
+        """Normals and tangents of a surface shader, unsupported because all lobes share a frame."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
 
 class Functions(Evaluating):
-    """A host that compiles functions for values and for fitted albedos, without transmission."""
+    """A host without transmission, which compiles functions for values and fitted albedos."""
 
     abilities = Evaluating.abilities & ~(
         Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.TRANSMISSION
@@ -474,17 +473,17 @@ SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughnes
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
 FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in OpenImageIO's source
-POINT = 3.0 * EYE / NEAREST  # roundings of a point 40 units from the eye and 1/2 from the light
+POINT = 3.0 * EYE / NEAREST  # 3 roundings of numbers up to 40, divided by the light's distance 1/2
 FLAT_SLOPE = 8.0  # largest slope of the diffuse models, per radian
-# Largest slope of microfacets, per radian. The distribution has a slope of 2 divided by the
-# smallest alpha. Fresnel and shadowing add 3.
+# Largest slope of a microfacet lobe, per radian. The slope is the sum of 2 divided by the smallest
+# alpha, for the distribution, and 3, for Fresnel and shadowing.
 SHARP_SLOPE = 2.0 / samples.LEAST_TURNED + 3.0
 FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
-# Error of the light's direction in radians. A point is up to JITTER pixels from the center of its
-# pixel. On a triangle at a grazing angle, this distance is divided by the cosine RIM.
+# Error of the light's direction in radians. A ray is up to JITTER pixels beside a pixel's center.
+# On a surface at the smallest cosine, RIM, this distance is divided by RIM.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
 DISPLACED = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
@@ -524,7 +523,7 @@ class RenderablePairs(Evaluating):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """The views of a few random pairs, as all views share a fixed number of light paths."""
+        """The views of a few pairs, because all views share a fixed number of light paths."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
@@ -603,7 +602,7 @@ class Traced(Rendered):
 
 
 class LobesBelow(RenderablePairs):
-    """The diffuse lobe of a surface shader, without the lobes above; see SurfaceLobe."""
+    """The diffuse lobe of a surface shader, which lies below other lobes; see SurfaceLobe."""
 
     abilities = Ability.BELOW | Ability.LIGHT
     all_samples = True
@@ -634,10 +633,10 @@ class RenderedLobes(LobesBelow):
 
 
 def diffuse_alone(evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
-    """Values of the diffuse lobe, without the lobes above; see SurfaceLobe."""
+    """The diffuse lobe of a surface shader, after removing other lobes; see SurfaceLobe."""
     above = evaluate(batch.altered(color=samples.BLACK))
     lambert = evaluate(batch.altered(color=samples.WHITE, roughness=0.0)) - above
-    with np.errstate(divide="ignore", invalid="ignore"):  # an all-black shader divides 0 by 0
+    with np.errstate(divide="ignore", invalid="ignore"):  # a shader that returns 0 causes 0 / 0
         return (evaluate(batch) - above) / lambert * batch.wi[:, 2:]
 
 
@@ -650,15 +649,15 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
     return replace(spec, row=replace(spec.row, variants=variants))
 
 
-# Hosts that render pictures of a sphere. Each lit point of the sphere is a pair of directions.
+# Hosts that render pictures of a sphere. Each lit point of a sphere provides a pair of directions.
 
 PICTURE_SIZE = 128
 HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead of rounding
-# Relative error of a lobe per radian of error in a direction. The distribution has a slope of 2 /
-# alpha, with an alpha of at least 0.4. Fresnel, shadowing and the cosine add 3.
+# Relative error of a lobe per radian of error in a direction. A microfacet distribution contributes
+# 2 / alpha, where alpha is at least 0.4. Fresnel, shadowing and the cosine contribute 3.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
-# Each of two cosines has five roundings. The error counts 22 times: 20 times in s / t, because
-# cosines are at least 0.05, once in s, and once in the cosine factor.
+# Each of two cosines has five roundings. A diffuse value contains a cosine's error 22 times: 20
+# times in the ratio s / t, because t is at least 0.05, once in s, and once in the cosine factor.
 TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
 EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
@@ -758,7 +757,7 @@ class Spheres(Pictures):
 def _compile(host: Host, text: str, library: str, methods: Methods) -> Shader:
     from mxeon.shaders.generation import ApproximationWarning  # this import loads MaterialX
 
-    with warnings.catch_warnings():  # CyclesPictures.points excludes approximated pairs
+    with warnings.catch_warnings():  # pairs with approximations are not judged
         warnings.simplefilter("ignore", ApproximationWarning)
         return host.compile(text, library=library, methods=methods)[0]
 
@@ -793,7 +792,7 @@ class CyclesPictures(Spheres):
     }
 
     def points(self, scene: Scene) -> Pairs:
-        """Points where the host's closure matches the model.
+        """Pairs of directions, and a mask of pairs for which the closure of Cycles is the model.
 
         For some models, the azimuths of light and view must differ by at most 90 degrees.
         """
@@ -838,7 +837,7 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Tolerances without albedos of pbrlib nodes, because Storm samples other directions."""
+        """Omit the tolerance of albedos of pbrlib nodes, because Storm samples other directions."""
         errors = super().errors(spec)
         return {**errors, "albedo": None} if Ability.LOBE in spec.requires else errors
 
@@ -859,7 +858,7 @@ PICTURE_RADIANCE = sum_of(
 
 
 class DarkPictures(Pictures):
-    """One picture per material of an emitting surface without other light."""
+    """One picture per material of an emitting surface. The scene has no other light."""
 
     abilities = Ability.SURFACE | Ability.LIGHT
 

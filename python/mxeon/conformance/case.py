@@ -35,7 +35,7 @@ def model_values(spec: Spec, quantity: str) -> Callable[[Batch], Array]:
     return cache.remembered(getattr(spec, quantity))
 
 
-@lru_cache(maxsize=4)  # two quantities of two specs
+@lru_cache(maxsize=4)  # albedo and throughput of a case's spec and of a related spec
 def candidates(spec: Spec, quantity: str) -> tuple[Candidate, ...]:
     """Functions that may explain the albedo or the throughput, with caches of their values."""
     functions: tuple[Candidate, ...] = getattr(spec, f"{quantity}_candidates")
@@ -132,7 +132,7 @@ class Case:
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """For each input that the engine can set, the inputs before and after a change."""
+        """Inputs before and after a change, for each input that the engine can set."""
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
@@ -177,13 +177,13 @@ def albedos(case: Case) -> Iterator[Compared]:
 
 
 def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
-    """The throughput of a layer in some kinds of light, and the expected 1 minus the albedo."""
+    """Throughputs of a layer in some kinds of light. The expected throughput is 1 - albedo."""
     for branch, batch in product(branches, case.views):
         yield Compared(batch, case.throughput(batch, branch), case.expected_throughput(batch))
 
 
 def frames(case: Case) -> Iterator[Compared]:
-    """Values in rotated and unrotated frames, which must agree. Half of the normals face away."""
+    """Values in rotated and unrotated frames. Half of the normals point away from the viewer."""
     turned = case.backend.turned
     # A sum over the environment is slow. Every fifth pair still covers both sides of the surface.
     subset = turned.where(slice(None, None, 5))
@@ -199,7 +199,7 @@ def frames(case: Case) -> Iterator[Compared]:
 def dead_inputs(
     case: Case, batch: Batch | None = None, evaluate: Callable[[Batch], Array] | None = None
 ) -> list[str]:
-    """Names of inputs that do not affect the values of `evaluate`, by default in direct light."""
+    """Names of inputs that do not affect the values of `evaluate`, by default `case.direct`."""
     batch, evaluate = batch or case.few[0], evaluate or case.direct
     original = evaluate(batch)  # most changes start from the unmodified batch
     dead = []

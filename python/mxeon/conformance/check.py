@@ -67,7 +67,7 @@ class Check:
     key: str  # a single word
     claim: str  # a full sentence
     applies: Specs
-    measure: Measure  # returns comparisons, of which the worst row is judged, or a single number
+    measure: Measure  # returns a single number, or comparisons whose worst row is judged
     # A tolerance for all specs, or a key of `Spec.errors`. The default is the key of the compared
     # quantity or, without a comparison, the check's key.
     tolerance: str | Tolerance = ""
@@ -96,7 +96,7 @@ class Check:
         return Measurement(worst.error, worst.worst, *regions.errors(compared, tolerance))
 
     def is_reproduced(self, case: Case, title: str, tolerance: Tolerance) -> bool:
-        """Whether the function with this title has the engine's values on the check's samples.
+        """Whether the function `title` reproduces the engine's values on the check's samples.
 
         Negative values count as 0, because the check `dark` judges negative values.
         """
@@ -155,7 +155,7 @@ class Check:
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
-            # A permitted function only excuses errors in checks with `open`.
+            # Errors of a permitted function count as failures unless `open` is set.
             permitted = self.open and diagnosis.permitted
             if permitted and not isinstance(self.measure, Comparison) and diagnosis.distances:
                 permitted = self.is_reproduced(case, diagnosis.first.key, tolerance)

@@ -62,7 +62,7 @@ HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 # Errors are weighted by cos(theta_o), because the normal changes by 1 / cos(theta_o) per pixel.
 POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
 PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
-# OpenGL requires weights of 8 bits in image filters. Neighboring texels differ by 1 at most.
+# OpenGL permits image filters with weights of 8 bits. Neighboring texels differ by 1 at most.
 TEXTURED = single(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
 CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
 ENCODED = single(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
@@ -78,8 +78,8 @@ FITTED, SHADED = (
 def tolerance_of(shader: Shader, lobes: Iterable[ShownLobe], host: Host, scene: Scene) -> Tolerance:
     """The tolerance of a material's picture.
 
-    The terms are errors of fits, of image filters, and of some lobes. Hosts filter an image before
-    the colors of the image are decoded.
+    The terms are errors of fits, of image filters, and of some lobes. Decoding of sRGB colors
+    amplifies the errors of a filter, because hosts filter encoded colors.
     """
     nodes, lobes = list(inner_nodes(shader.document)), tuple(lobes)
     fitted = FITTED_NODES & {lobe.category for lobe in lobes}
@@ -167,7 +167,7 @@ ONLY_FINITE = "picture is shown and only has to be finite"
 def _read(
     make: Callable[[], tuple[Shader, ...]],
 ) -> tuple[tuple[Shader, ...], dict[str, str], list[CodeWarning | notes.DocumentWarning]]:
-    """Shaders of a document, approximations by element, and other notes for readers."""
+    """Shaders of a document, approximations in the shader of each element, and other notes."""
     with warnings.catch_warnings(record=True) as records:
         warnings.simplefilter("always")
         warnings.simplefilter("error", notes.MissingFileWarning)
@@ -213,7 +213,7 @@ def judge_document(
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
-    """The scenes of a host, without environments if the host's lighting methods have none."""
+    """The scenes of a host. A host without environment light has no scenes with environments."""
     scenes = host_row(host.name).scenes
     if host.active.environment == "none":
         scenes = tuple(each for each in scenes if each.environment is None)
@@ -306,7 +306,7 @@ def _input_at_fault(
     """The input whose removal brings a renderer's own material nearest to the reference."""
     small = [replace(scene, size=64) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
-    # Largest difference from the reference after an input is removed. The name "" removes none.
+    # Largest difference from the reference without an input. The key "" is for the full material.
     errors: dict[str, float] = {}
     for name in ("", *names):
         document = mx.createDocument()
@@ -465,8 +465,8 @@ PORTRAIT_SCENES = tuple(replace(scene, size=96) for scene in (SIDE, BACK))
 def comparison_pictures(case: Case) -> tuple[Picture, ...]:
     """Pictures of a rough diffuse node in light from the side and from behind, with references.
 
-    No pictures are drawn of other nodes, of a surface shader's lobe, or by renderers in which each
-    pixel shows one pair of directions. Pixels near the rim and the terminator are black in all
+    The result is empty for other nodes, for lobes of surface shaders, and for renderers in which
+    each pixel shows one pair of directions. Pixels near the rim and the terminator are black in all
     pictures.
     """
     rough = isinstance(case.spec, DiffuseModelSpec) and not isinstance(case.spec, SurfaceLobe)
@@ -485,6 +485,6 @@ def comparison_pictures(case: Case) -> tuple[Picture, ...]:
         names = (results.PORTRAIT, case.spec.title, case.host.name, case.library, scene.name)
         keys = ("document", "element", "host", "library", "scene")
         metadata = dict(zip(keys, names, strict=True)) | {"version": mxeon.__version__}
-        metadata |= {"points": case.host.name}  # a host may implement only a part of the model
+        metadata |= {"points": case.host.name}  # the choice of points depends on the host
         pictures.append(Picture(*names, image, expected, metadata))
     return tuple(pictures)

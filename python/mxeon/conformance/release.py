@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compare definitions, units, graphs and texts of a library with the installed MaterialX release.
 
-Other checks judge nodes with a model. For everything else, the release is the reference. A node
-that is written differently is evaluated for the same inputs and must have the same values.
+Other checks judge nodes with a model. For everything else, the release is the reference. If the
+text or graph of a node differs from the release, the node must have the values of the release.
 
 A library that lacks nodes of the release is an older version and is not compared. A library with
 additional nodes in MaterialX's own documents may be a newer version, so differences of that library
@@ -44,8 +44,7 @@ SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes
 SIZE = 24  # width of the pictures that compare lobes
 MATERIALS = 3  # number of random materials in pictures of lobes
-# Attributes of ports that are compared. Ranges only guide editors, so that ranges are only compared
-# for eonlib's nodes.
+# Compared attributes of ports. Ranges, which only guide editors, are compared for eonlib's nodes.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
@@ -101,7 +100,7 @@ def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
 def definition_facts(
     definition: mx.NodeDef, reference: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """The compared attributes of a node definition, for all ports of the definition `reference`."""
+    """Compared attributes of a definition, and of the ports that `reference` has."""
     name = reference.getName()
     facts = {
         f"category of {name}": definition.getNodeString(),
@@ -134,7 +133,7 @@ def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
 
 
 def normalized(text: str) -> str:
-    """The text with numbers in the shortest form and without "false", the default of flags."""
+    """The text with shortened numbers and without "false", because flags are false by default."""
     words = text.replace("false", "").replace(",", " ").split()
     with suppress(ValueError):
         words = [f"{float(word):g}" for word in words]
@@ -142,7 +141,7 @@ def normalized(text: str) -> str:
 
 
 class Terms:
-    """Numbers for the ports of graphs. Ports with equal numbers have equal values."""
+    """Assigns integers to ports of graphs. Ports with the same integer have equal values."""
 
     def __init__(self) -> None:
         self._numbers: dict[object, int] = {}
@@ -170,7 +169,7 @@ class Terms:
 
 
 def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple[Place, Place]]:
-    """Pairs of ports at which two graphs differ: different lobes, or inputs of equal lobes."""
+    """Pairs of ports at which two graphs differ. A common lobe is replaced by the lobe's inputs."""
     if terms.port(own) == terms.port(released):
         return
     nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, released)]
@@ -185,7 +184,7 @@ def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple
 
 
 class Comparison:
-    """Comparison of a library with the release, on a host that evaluates the library's texts."""
+    """Compares a library with the release. A host evaluates nodes whose texts differ."""
 
     def __init__(self, host: Host, library: str, release: mx.Document, image: str) -> None:
         self._host, self._library, self._release, self._image = host, library, release, image
@@ -259,7 +258,7 @@ class Comparison:
         return own, released, *(each.getImplementation(self._target) for each in (own, released))
 
     def _change(self, name: str) -> Hashable:
-        """A key for a node's change since the release, or None for a node to ignore."""
+        """A key that is equal for nodes with the same change of text; None to skip a node."""
         own, released, code, released_code = self._pair(name)
         if released_code is None:
             return None
@@ -321,7 +320,7 @@ class Comparison:
         return error
 
     def _text_error(self, own: mx.NodeDef, released: mx.NodeDef) -> float:
-        """The largest difference between two texts' values. Raise NotRun if there are no values."""
+        """The largest difference of two nodes' values. Raise NotRun for nodes without values."""
         outputs, inputs = released.getActiveOutputs(), released.getActiveInputs()
         kinds, input_kinds = ({port.getType() for port in ports} for ports in (outputs, inputs))
         sides = (own, self._library), (released, "stock")
@@ -338,7 +337,7 @@ class Comparison:
         raise NotRun("its text is not MaterialX's, and nothing evaluates it")
 
     def _value_error(self, own: Subject, released: Subject) -> float:
-        """The largest difference of values. Raise NotRun if the released node does not compile."""
+        """The largest difference of values. Raise NotRun if `released` cannot be evaluated."""
         try:
             expected = self._values(released)
         except (DocumentError, ShaderError) as error:
@@ -365,7 +364,7 @@ class Comparison:
         return np.concatenate(values, axis=1).astype(np.float64)
 
     def _picture_error(self, *subjects: Subject) -> float:
-        """The largest difference between pictures and alphas, or infinity if a picture fails."""
+        """The largest difference between two subjects' pictures, or infinity if a subject fails."""
         shaders: list[generation.Shader] = []
         try:
             for each in subjects:
@@ -406,7 +405,7 @@ class Comparison:
 
     @cached_property
     def tolerance(self) -> Tolerance:
-        """The tolerance for the values of a graph that is written in two ways."""
+        """The tolerance for differences between graphs that are mathematically equal."""
         base, exponent = float32(np.linspace(0.01, 1.0, SAMPLES)), float32(np.full(SAMPLES, 2.0))
         power = float(spec.POWER.errors(self._host, base, exponent).max())
         engine = Term(8.0 * power, "the engine's pow(), eight times")
@@ -444,7 +443,7 @@ def connected(
     port_kind: str,
     output: str = "",
 ) -> mx.Node:
-    """A new node in the document of `source`, whose input `port` is an output of `source`."""
+    """A new node in the document of `source`. The node's input `port` is connected to `source`."""
     node = source.getDocument().addNode(category, name, kind)
     connection = node.addInput(port, port_kind)
     connection.setNodeName(source.getName())
@@ -454,7 +453,7 @@ def connected(
 
 
 def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
-    """A new node that computes a subject. A separate node is connected to each input."""
+    """A new node that computes a subject. The inputs are connected to constants and lobes."""
     definition, kind, place = subject.definition, subject.kind, subject.place
     category, name = definition.getNodeString(), definition.getName()
     omitted = ("VDF",) if kind in CLOSURES else CLOSURES

@@ -49,7 +49,7 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """Counts, up to 1/8 smaller unless the seed is 1, so that shaders cannot expect a count."""
+        """Counts that the seed reduces by up to 1/8. Shaders could recognize fixed counts."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -113,7 +113,7 @@ class Batch:
 
     @property
     def rough(self) -> Array:
-        """The roughness of each pair, (N,): the larger of two alphas, or 0 if there is none."""
+        """The roughness of each pair, (N,): the larger of two alphas, or 0 without roughness."""
         roughness = np.asarray(self.inputs.get("roughness", 0.0), np.float64)
         if roughness.shape[-1:] == (2,):
             roughness = roughness.max(axis=-1)
@@ -135,7 +135,7 @@ def generator() -> Rng:
 
 
 def directions(rng: Rng, count: int) -> Array:
-    """Random directions with uniform cosines, of which a quarter is log-uniform down to 1e-6."""
+    """Random directions. 3/4 of the cosines are uniform, and 1/4 is log-uniform down to 1e-6."""
     mu = rng.random(count)
     mu[: count // 4] = GRAZING ** rng.random(count // 4)
     rng.shuffle(mu)
@@ -155,7 +155,7 @@ EACH = 256  # number of pairs of each special kind
 GRID = (1.0, 0.999, 0.6, 0.25, 0.05, 1e-3, 1e-5, 1e-6, 3e-7, 1e-7)  # cosines of special pairs
 AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
 ABOVE_ONE = 1.0 + 2.0**-23  # cosine of equal unit vectors after one upward float32 rounding
-HORIZON = 0.1  # smallest cosine if the other direction is at or below the horizon
+HORIZON = 0.1  # smallest cosine of a direction if the other direction is on or below the horizon
 POLE = 0.99  # largest |y| of normals in rotated frames, which excludes the poles of the sky map
 TURNED = (0.25, 0.95)  # range of cosines in rotated frames, because a rotation rounds cosines
 LEAST_SHEEN = 0.01  # smallest sheen roughness, because the Zeltner model clamps smaller values
@@ -244,7 +244,7 @@ SLOPE = 0.5  # derivative of a channel of the sky's irradiance along the channel
 
 
 def sky(normal: Array) -> Array:
-    """Irradiance of the sky divided by pi at normals (N, 3). Each channel grows along one axis."""
+    """Irradiance of the sky divided by pi, at normals (N, 3). Each channel grows along one axis."""
     return 0.5 + SLOPE * normal
 
 
@@ -258,8 +258,8 @@ def sky_map() -> NDArray[np.float32]:
 def texel_middles(near: Array) -> Array:
     """Directions to the middles of sky texels that contain the unit vectors `near`, both (N, 3).
 
-    In the middle of a texel, every filter reads a single texel. The opposite direction is also the
-    middle of a texel.
+    In the middle of a texel, every filter reads a single texel. The direction opposite to a middle
+    is also the middle of a texel.
     """
     polar = np.arccos(np.clip(near[:, 1], -1.0, 1.0)) / np.pi
     azimuth = np.arctan2(near[:, 0], -near[:, 2]) / (2.0 * np.pi) + 0.5

@@ -90,10 +90,10 @@ def exact(function: str) -> tuple[Array, Array]:
         return values, np.pi * columns["mu_i"][:, np.newaxis] if brdf else np.ones((1, 1))
     total: Array = np.maximum(1.0, np.abs(values).max(axis=1))
     for name in arguments(function):
-        # Skip divisors. A quotient has a relative error, and a huge slope near a divisor of 0.
+        # Skip divisors, because quotients have relative errors and huge slopes near a divisor of 0.
         if name == "divisor" or (columns[name].ndim > 1 and name != "wo"):
             continue
-        # Step toward the middle of the range. The step of a direction only changes the cosine.
+        # Step toward the middle of an argument's range. A direction changes in the cosine only.
         steps = np.where(columns[name] > 0.5, -STEP, STEP)
         if name == "wo":
             steps[:, :2] = 0.0
@@ -111,14 +111,13 @@ def arguments(function: str) -> list[str]:
 POINTS = 4096  # points per function
 CORNERS = 64  # number of points with arguments at the ends of their ranges
 
-# Directions along the normal (with a cosine of 1 or rounded up above 1), on the horizon, and
-# between.
+# Two directions along the normal (cosines 1 and 1 + 2^-23), two on the horizon, and one oblique.
 AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0), (0.6, 0.8)))
 
 Columns = Mapping[str, Array]
 
 
-# NumPy functions with other names or other orders of arguments than the shader functions.
+# NumPy functions by shader function, if the name or the order of the arguments differs.
 NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),
@@ -205,7 +204,7 @@ class FunctionProbe:
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
-        """Values of the library's functions, by whether the arguments are deliberately wrong."""
+        """Values of the library's functions. The key True is for deliberately wrong arguments."""
         return {False: self._values(1.0), True: self._values(0.95)}
 
     @cached_property
@@ -268,7 +267,7 @@ def _judged(check: FunctionCheck, probe: FunctionProbe) -> Result:
 
 
 def _causes(check: FunctionCheck, probe: FunctionProbe) -> tuple[Cause, ...]:
-    """Wrong functions without wrong callees, and functions of the check with wrong callees."""
+    """Missing functions, wrong functions with correct callees, and functions with wrong callees."""
     values = probe.values[False]
     errors = {name: _error(name, each) for name, each in values.items()}
     wrong = [name for name in errors if errors[name] > probe.tolerance(row_of(name)).value]

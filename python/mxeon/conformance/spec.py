@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A spec describes a node for the checks, with ranges of inputs, models, errors and samples.
 
-Each file in the folder `specs` has a family of nodes. Backends define how an engine evaluates a
-spec.
+Each file in the folder `specs` describes a family of nodes. Backends define how an engine
+evaluates a spec.
 """
 
 from abc import ABC, abstractmethod
@@ -31,7 +31,7 @@ F = TypeVar("F")  # type of the functions in a row of the models' table
 class Input:
     """An input of a node."""
 
-    name: str  # name, or path in a graph
+    name: str  # name of the input, or path of a port in a graph
     type: str = "float"  # MaterialX type
     low: ArrayLike = 0.0  # lower end of the range of random values; may differ by component
     high: ArrayLike = 1.0  # upper end of the range of random values; may differ by component
@@ -42,8 +42,8 @@ class Input:
     # Whether random values are log-uniform. If not, a tenth of the values is at each end of the
     # range.
     logarithmic: bool = False
-    often: float | None = None  # value of every other sample, for inputs that are rarely set
-    equal: bool = False  # whether both components of every other sample are equal
+    often: float | None = None  # value in half of the samples, for inputs that are rarely set
+    equal: bool = False  # whether the two components are equal in half of the samples
     # Values of the input in two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
     variable: str = ""  # shader variable that has the default and that hosts set
@@ -165,9 +165,9 @@ class Spec(ABC):
     # The kind of light, the output, and the factor that scales the host's values.
     evaluated: tuple[str, str, float] = ("direct", "response", np.pi)
     flat: bool = False  # whether values have no sharp peak
-    # Slope of the values along the angle to the normal. Cosines near 1 do not resolve this angle.
+    # Slope of the values per radian near the normal, where rounded cosines do not resolve angles.
     along: float = 0.0
-    optional: bool = False  # whether a target may lack the node, so that checks are not run
+    optional: bool = False  # whether checks are skipped if a target lacks the node
     # Errors of an engine's built-in functions, by quantity. The errors are measured on the engine.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
     # Additional errors of MaterialX's fit for prefiltered light, by quantity.
@@ -193,7 +193,7 @@ class Spec(ABC):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """All inputs before and after each input is changed, by the name of the changed input."""
+        """Inputs before and after the change of one input, by the name of that input."""
         return {
             each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
             for each in self.inputs
@@ -244,7 +244,7 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     curved: ClassVar[bool] = False  # whether values depend on the surface's curvature
-    # States that the check `states` skips, and axes of which this check uses only the first state.
+    # States that the check `states` skips, and kinds of states with only the first state checked.
     plain: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -408,7 +408,7 @@ class EngineFunction:
     def error(
         self, arguments: Callable[[], Sequence[Array]], allowed: float = 1.0
     ) -> Callable[[base.Host], float]:
-        """A function that returns a host's largest error minus `allowed` float32 roundings of 1."""
+        """The excess of an error over `allowed` float32 roundings, as a function of the host."""
         least = allowed * ROUNDING
         return lambda host: max(float(self.errors(host, *arguments()).max()) - least, 0.0)
 

@@ -103,7 +103,7 @@ def _twins(library: str) -> Faults:
 
 
 def _clashes(library: str) -> Faults:
-    """Names that two nodes of a library define, except clashes in MaterialX itself."""
+    """Names that two nodes of a library define, except names that clash in MaterialX itself."""
 
     def clashes(name: str, target: str, twice: bool = False) -> dict[texts.Clash, str]:
         search = library_tree.search_path(name)
@@ -241,7 +241,7 @@ def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
     rows = {name: each.reshape(DRAWS, -1) for name, each in drawn.items()}
     rows["weight"], normal = rng.random((DRAWS, 1)), rng.standard_normal((DRAWS, 3))
     rows["normal"] = normal / np.linalg.norm(normal, axis=1, keepdims=True)
-    # [Portsmouth2025], Eq. (19), is the tint of EON. Without the flag, MDL's closure is FON.
+    # [Portsmouth2025], Eq. (19), is the tint that turns MDL's closure from FON into EON.
     rho, r = rows["color"], rows["roughness"]
     average = (1.0 + formulas.C2 * r) / (1.0 + formulas.C1 * r)
     tint = rho**2 * average / (1.0 - rho * (1.0 - average))

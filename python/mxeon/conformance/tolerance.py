@@ -79,7 +79,7 @@ def mean_error(measured: Array, expected: Array) -> Array:
 
 
 def mean_scaled(measured: Array, expected: Array) -> Array:
-    """The `mean_error` of rows divided by 1 or, if larger, by the row's largest expected value."""
+    """The `mean_error` after dividing each row by the larger of 1 and the expected values."""
     scale = _scale(expected)
     return mean_error(measured / scale, expected / scale)
 
@@ -115,7 +115,7 @@ def errors_of(rows: NDArray[np.floating], tolerance: float, region: Region | Non
 
 
 def checksum(batches: Iterable[Batch]) -> str:
-    """CRC-32 of directions and inputs, which are rounded to float32, as hexadecimal digits."""
+    """Hexadecimal CRC-32 of directions and inputs, which are first rounded to float32."""
     crc = 0
     for batch in batches:
         for column in (batch.wo, batch.wi, *batch.inputs.values()):
@@ -187,7 +187,7 @@ class Tolerance:
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:
-        """Divisors of the rows' errors, (N, 1). If `scaled`, divisors of large values exceed 1."""
+        """Divisors of the rows' errors, (N, 1), which are 1 unless the metric is `scaled`."""
         return _scale(expected) if self.metric is scaled else np.ones((len(expected), 1))
 
 

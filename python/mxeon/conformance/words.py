@@ -170,7 +170,7 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# Words between the names of states that all wrong values share. Lobes and lights have states.
+# Words that join the names of states of lobes and lights. All wrong values share these states.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 SUMS = "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
 # Other defects, and facts about defects. `_filled` replaces the braces by names and numbers.
@@ -311,7 +311,7 @@ def diagnosis(found: Diagnosis) -> str:
 
 def _cause(cause: Cause, distances: Mapping[str, float]) -> str:
     text = _model(cause, distances) if cause.kind is Kind.MODEL else SENTENCES[cause.kind](cause)
-    named = cause.branch and cause.key != "passes_other_light"  # the text already names the branch
+    named = cause.branch and cause.key != "passes_other_light"  # the sentence names the branch
     return f"branch {cause.branch}: {text}" if named else text
 
 
@@ -467,7 +467,7 @@ def size(found: Difference) -> str:
 
 
 def appearance(found: Difference) -> str:
-    """The difference between a picture and its reference, without the size of the difference."""
+    """Whether a picture is too bright, too dark or not finite, and in which light, in words."""
     light = LIGHTS.get(found.scene, found.scene)
     if not math.isfinite(found.largest):
         return f"has pixels that are infinite or not a number in {light}"
@@ -475,7 +475,7 @@ def appearance(found: Difference) -> str:
 
 
 def excess(result: Result) -> str:
-    """An error above the tolerance in words, or the fact that a control passed, otherwise ""."""
+    """The error, if above the tolerance, or the fact that a control passed, in words; else ""."""
     control = result.control
     if result.error is not None and not result.within:
         if result.difference:
@@ -565,7 +565,7 @@ def annotation(level: str, title: str, message: str) -> str:
 
 
 def sentence(run: Run) -> str:
-    """The verdict on all libraries that are not judged for comparison, in words."""
+    """The verdict in words, which ignores libraries that are judged for comparison."""
     judged, total = run.judged, counted(len(run.judged), "check")
     passed, differing, failed, not_run = (run.counts[each] for each in results.VERDICTS)
     allowed = ""
@@ -618,7 +618,7 @@ def sentence(run: Run) -> str:
 
 
 def summary(run: Run) -> str:
-    """The verdict, MaterialX's version, the folder if not installed, and the time, in words."""
+    """The verdict, MaterialX's version, MaterialX's folder unless installed, and the time."""
     text = sentence(run)
     if version := run.software.get("MaterialX"):
         folder = run.software.get("MaterialX folder")
@@ -627,7 +627,7 @@ def summary(run: Run) -> str:
 
 
 def origins(run: Run) -> tuple[str, ...]:
-    """The number of files from each folder that is judged as a library, and from MaterialX."""
+    """For each folder judged as a library, the numbers of the folder's and of MaterialX's files."""
     return tuple(
         f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
         + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
@@ -637,7 +637,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """One line with the subjects that no check judges and with the reasons, if there are any."""
+    """A line with the subjects that no check judges, and with reasons; () without such subjects."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)

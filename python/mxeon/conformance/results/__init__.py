@@ -35,10 +35,10 @@ NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 # Exit status of a run for each verdict.
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
-# Name of the document in sample pictures of nodes, which belong to no document.
+# Used instead of a document's name in pictures of nodes, which belong to no document.
 PORTRAIT = "portrait"
 SOURCE = "source"  # replaces the host in checks of text, which need no host
-SHADER_FUNCTIONS = "shader twins"  # replaces the node in checks of a library's functions
+SHADER_FUNCTIONS = "shader twins"  # subject of the checks of a library's functions
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # file patterns of a report
 DIRECT = ("value", "lobe")  # checks in direct light; every node has one of these checks
@@ -79,7 +79,7 @@ class Kind(Enum):
 
     NONE = ""
     MODEL = "model"  # the known model or defect nearest to the values
-    FAULT = "fault"  # an error in how the correct model is used, which reproduces the values
+    FAULT = "fault"  # a wrong use of the correct model, which reproduces the values
     ACCURACY = "accuracy"  # insufficient accuracy of the correct model
     REGION = "region"  # the region of pairs and inputs with wrong values
     NOT_FINITE = "not finite"  # the region of pairs and inputs without finite values
@@ -266,7 +266,7 @@ class Result(BriefRepr):
     - `measured`: Inputs of a document's nodes whose values come from the host, because patterns
       have no model; see `mxeon.conformance.reference.HostValues`.
     - `pages`: Names of pages in `docs/upstream/` on the defects that the result shows.
-    - `seconds`: Duration of the result's task, divided equally among the task's results.
+    - `seconds`: Duration of the task that has the result, divided by the task's number of results.
 
     Raises ValueError if the verdict is unknown, if the error is negative, or if an error has no
     tolerance.
@@ -461,7 +461,7 @@ class Run(Scope):
 
     @property
     def exit_status(self) -> int:
-        """Exit status of `mxeon check`: passed 0, failed 1, a document was refused 2, not run 3."""
+        """Exit status of `mxeon check`: 0 passed, 1 failed, 2 a document was refused, 3 not run."""
         return errors.MISUSE if self.refused else STATUSES[self.verdict]
 
     def raise_for_failure(self) -> None:
@@ -486,13 +486,13 @@ class Run(Scope):
         """
         if self.counts[FAILED]:
             return FAILED
-        # A run that lacks a check has not passed.
+        # A run has not passed if a check, a task or a document is missing.
         missing = self.counts[NOT_RUN] or not self.judged or self.missing or self.refused
         return NOT_RUN if missing else PASSED
 
     @cached_property
     def counts(self) -> dict[Verdict, int]:
-        """The number of checks by verdict, without libraries that are judged for comparison."""
+        """The number of checks by verdict, ignoring libraries that are judged for comparison."""
         tally = Counter(each.verdict for each in self.judged)
         return {verdict: tally[verdict] for verdict in VERDICTS}
 
@@ -503,7 +503,7 @@ class Run(Scope):
 
     @property
     def judged(self) -> tuple[Result, ...]:
-        """The results of all libraries that are not judged for comparison."""
+        """The results, except results of libraries that are judged for comparison."""
         return tuple(each for each in self.results if each.library not in self.compared)
 
     @property
@@ -512,7 +512,7 @@ class Run(Scope):
         return tuple(line for lines in self.refused.values() for line in lines)
 
     def is_elsewhere(self, result: Result, *documents: str) -> bool:
-        """Whether a check only fails for inputs or lobes that no document with the node uses."""
+        """Whether a check fails only for inputs or lobes that the user's documents never use."""
         from mxeon.conformance.results.known_issues import blamed
 
         region, groups = result.diagnosis.region, blamed(result)
@@ -531,7 +531,7 @@ class Run(Scope):
 
 
 def _words() -> ModuleType:
-    """The module that makes sentences, imported late because `words` imports this module."""
+    """The module `words`, imported late because `words` imports this module."""
     from mxeon.conformance import words
 
     return words

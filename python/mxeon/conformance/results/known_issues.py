@@ -39,7 +39,7 @@ class Issue:
 
     page: str  # file name without suffix
     title: str  # heading of the page, which states the defect
-    text: str = field(repr=False)  # the page without the row
+    text: str = field(repr=False)  # text of the page, without the row of TOML
     # Section of the index, by default the first word of the page's name; see
     # tools/site/ledger/pages.py.
     group: str
@@ -63,8 +63,7 @@ class Issue:
     kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
     pull: int = 0  # number of the pull request that repairs the defect after the release
     cause: Cause | None = None  # first cause in the diagnosis of the first row
-    # A file of MaterialX, and the text that the patch changes in the file, before and after the
-    # change.
+    # A file of MaterialX, the text that the patch replaces in the file, and the new text.
     patch: tuple[str, ...] = ()
     # The largest measured error of each result.
     sizes: Mapping[Row, float] = field(default_factory=dict, hash=False)
@@ -153,8 +152,8 @@ def _rows(table: Table) -> tuple[Row, ...]:
 
 # Hosts that use their own closures with every library.
 OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
-REPAIRED = 30.0  # errors below an issue's error divided by this number have another cause
-SPREAD = 1.5  # allowed ratio of an error to the issue's error on another system
+REPAIRED = 30.0  # an issue does not explain an error that is smaller by this factor
+SPREAD = 1.5  # largest ratio of an error to the issue's error, measured on another system
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
@@ -204,7 +203,7 @@ def with_pages(result: Result, materialx: str = "") -> Result:
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
     """Whether an issue explains the error, the diagnosis and the shader text of a result."""
     row = result.check, result.subject
-    # Nothing was measured, for example because the shader does not compile.
+    # An issue with measured errors does not explain a shader that fails to compile.
     if result.error is None and issue.sizes:
         return False
     # Hosts that only render pictures measure relative errors. Relative errors cannot be compared

@@ -31,14 +31,14 @@ class Quantity(Enum):
     MATERIAL_MEAN = "material_mean", f"{_SCALED}, or albedo, mean", f"{_LARGE}; {_ALL}"
     REFLECTANCE = "reflectance", "reflectance"
     REFLECTANCE_RMS = "reflectance_rms", "reflectance, rms"
-    # Light that is transmitted, arrives or is emitted.
+    # Quantities of incident, transmitted or emitted light.
     LIGHT = "light", "light", "1 is all of the light"
     THROUGHPUT = "throughput", "throughput", "a throughput of 1 passes all light"
     TRANSMITTANCE = "transmittance", "transmittance"
     IRRADIANCE = "irradiance", "irradiance", "1 is a white environment"
     RADIANCE = "radiance", "radiance"
     RADIANCE_SLOPE = "radiance_slope", "radiance and its slope"
-    # Outputs, samples, and functions.
+    # Quantities of nodes' outputs, of samples, and of functions.
     OUTPUT = "output", "relative above 1", "errors of values above 1 are divided by the value"
     ALPHA = "alpha", "alpha"
     INDEX = "index", "n (1 - sqrt(r))^2"

@@ -29,7 +29,7 @@ from mxeon.shaders.methods import UNCHOSEN, Methods
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
-# Hosts that stay open for all libraries.
+# Hosts that stay open when the library changes.
 EVALUATING = {row.name for row in HOSTS if row.way == "pairs"}
 
 Outcomes = Iterable[tuple[int, Findings]]
@@ -112,7 +112,7 @@ def check(
             for target in {host_row(host).target for host in engines} & {*generation.TARGETS}:
                 try:
                     generation.check_generator(library, target)
-                except InterfaceError as reason:  # no task of this library could run
+                except InterfaceError as reason:  # no task of the library can run
                     raise InputError(str(reason)) from None
         if workers < 0:
             raise InputError(f"workers must be at least 0; got {workers}")
@@ -182,7 +182,7 @@ def _inputs(files: Sequence[AnyPath], libraries: Iterable[str], policy: Policy) 
 
 
 def read_run(folder: AnyPath) -> Run:
-    """The completed part of a folder's run. Raise ValueError without a journal of this version."""
+    """The completed part of a run. Raise ValueError if `folder` has no journal of this version."""
     return to_run(*read_journal(folder))
 
 
@@ -225,7 +225,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
         notes.append((warning, "every result"))
-    places: dict[str, list[str]] = {}  # subjects by note, unless the note names the subject
+    places: dict[str, list[str]] = {}  # subjects of each note; [] if the note names the subject
     for text, place in dict.fromkeys(notes):
         places.setdefault(text, []).extend([] if place in text else [place])
     hosts = tuple(dict.fromkeys(host for each in done for host in each.hosts))
@@ -275,8 +275,8 @@ def _executor(
 def _subject(task: Task) -> tuple[str, str, str]:
     """A key that is equal for tasks that should run in one worker.
 
-    These tasks share shaders, samples and diagnoses. Libraries share the expected values, but some
-    hosts must be opened again for each library.
+    Tasks with equal keys share shaders, samples and diagnoses. Libraries share the expected values,
+    but some hosts must be opened again for each library.
     """
     return task.host, "" if task.host in EVALUATING else task.library, task.subject
 

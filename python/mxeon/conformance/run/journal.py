@@ -87,7 +87,7 @@ class Journal:
             raise
 
     def _clear(self) -> None:
-        """Move earlier results to PREVIOUS. If the run is resumed, only delete its reports."""
+        """Move earlier results to PREVIOUS. If a run is resumed, only delete the run's reports."""
         names = [name for name in REPORTS if (self._folder / name).is_file()]
         if self._path.exists() and self._resume:
             for name in names:

@@ -40,7 +40,7 @@ def one_result(
     reason: str = "",
     diagnosis: results.Diagnosis = results.NO_DIAGNOSIS,
 ) -> Findings:
-    """Findings without a measurement, with a single result that has a reason or a diagnosis."""
+    """Findings with a single result, which has a reason or a diagnosis but no measurement."""
     if task.check == plan.STUDIO:  # a STUDIO task has no results
         return Findings(notes=((f"not drawn in the studio: {reason}", Path(task.subject).name),))
     if not (claim := CLAIMS.get(task.check)):
@@ -77,7 +77,7 @@ class Judge:
             return replace(findings, results=tuple(completed))
         except InterfaceError as reason:
             return one_result(task, results.NOT_RUN, reason=str(reason))
-        except DocumentError as reason:  # a document of mxeon itself is refused
+        except DocumentError as reason:  # mxeon itself wrote the refused document
             refused = results.Cause(results.Kind.DEFECT, "own_document_refused", text=str(reason))
             return one_result(task, results.FAILED, diagnosis=results.Diagnosis((refused,)))
 

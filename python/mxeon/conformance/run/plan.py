@@ -303,7 +303,7 @@ def make_plan(
     }
     idle = [host for host in hosts if tasks and host not in measuring]
     tasks += [Task(HOST, EVERY_NODE, host, libraries[0]) for host in idle]
-    # If some hosts measure anything, also report requested nodes that no host judges.
+    # Unless all hosts are idle, report requested nodes that no host judges.
     if len(idle) < len(hosts):
         subjects = {task.subject for task in tasks}
         named = (each for each in nodes if each not in (ALL, COMMON))
@@ -349,7 +349,7 @@ def _untabled(hosts: Iterable[str]) -> Iterator[tuple[str, str]]:
 
 
 def unjudged(library: str) -> tuple[tuple[str, str], ...]:
-    """Nodes that scatter or emit light, that a library adds, and that have no model."""
+    """Nodes without a model that a library adds and that scatter or emit light."""
     own, stock = (load_library(each).getNodeDefs() for each in (library, "stock"))
     names = {each.getNodeString() for each in own if each.getType() in LIT}
     names -= {*node_names(), *(each.getNodeString() for each in stock)}
@@ -387,7 +387,7 @@ def _on_host(
     defines = load_library(library).getMatchingNodeDefs
     for each in (*PBRLIB, *surface_texts.SENTENCES):
         missing = each.libraries and not defines(each.node)  # MaterialX lacks eonlib's nodes
-        # If there are no documents, a bundled library is judged only on the nodes that it repairs.
+        # If there are no documents, judge a bundled library only on nodes that the library repairs.
         judged = everywhere or kind in (OVERLAY, *(each.libraries or LIBRARIES))
         if judged and not missing and not (each.closure and no_closures):
             yield from _checks_of(each, host, library, methods)
