@@ -69,7 +69,7 @@ def material_statistics(stages, program, driver):
     """Statistics of a material's fragment shader for one light, by the driver's names."""
     assert stages["pixel"].count(LIGHTS) == 1
     text = stages["pixel"].replace(LIGHTS, LIGHT)
-    without_films = text.replace("if (fd.airy)", "if (false)")  # branch for films
+    without_films = text.replace("if (fd.airy)", "if (false)")  # turn films off
     found, bare = (
         statistics({**stages, "pixel": each}, program, driver) for each in (text, without_films)
     )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the time of EON from eonlib and from stock MaterialX in a compute shader.
 
-A time is in nanoseconds per call and invocation. Each invocation calls a function many times with
+Times are nanoseconds per call in an invocation. Each invocation calls a function many times with
 unpredictable arguments, and stores the sum. The time of a loop that only adds the arguments is
 subtracted. The first value of each invocation is compared with a float64 value. On software
 devices, processor time is measured, which excludes other processes.

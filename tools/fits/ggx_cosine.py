@@ -60,7 +60,7 @@ class Curves:
     function: str  # name of the shader function that computes c
     reflectance: Callable  # function of the cosine and a curve's parameter
     parameters: tuple  # parameter of each curve
-    shapes: tuple  # the number s that identifies each curve
+    shapes: tuple  # number s of each curve, a variable of the fit
     counts: tuple  # weight of each curve
     roots: int  # y is alpha to the power 2^-roots
     form: Form

@@ -50,19 +50,19 @@ FACETS = (
 # reflectances of all channels, and WIDTH_ORDER times the squared width of a node. Each square is
 # assumed to be at most ORDER_RATIO times the previous square.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
-NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # narrowest spectral sensitivity
+NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # the narrowest Gaussian
 LEAST_PATH = 1e-21  # least path difference in m
 LEAST_LOSS = 1e-12  # least share of escaping light
 # Parameters of the search for the largest error.
-SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # seed, films per step, steps of evolution
+SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # seed, films per step, steps of differential evolution
 WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films to vary, and sizes of the steps
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
 COLORED = 17  # NUMBERS plus seven for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
 MOVED = 0.3  # share of the COLORED numbers that change in a step
-LEAST = 1e-3  # lower limit of numbers, except for roughness, cosine and extinction
-# The worst films of longer searches, which random starts miss: a metal with total reflection in a
-# film of 1000 nm, and glass at grazing below a film of 1000 nm.
+LEAST = 1e-3  # lower limit of numbers for a film; roughness, cosine and extinction may be 0
+# Longer searches found these worst films of 1000 nm, which random starts miss. One film is on a
+# metal and reflects totally inside. The other film is on glass, seen at grazing.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
 CORNERS = {
     "dielectric_bsdf": GLASS,
@@ -155,7 +155,7 @@ def curve_errors(category, material, _, mu):
 
 
 def slopes(category, material, _, mu):
-    """Derivatives of a curve with respect to log(thickness), for errors of path differences."""
+    """Derivatives of a curve by log(thickness), which scale errors of path differences."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -328,9 +328,9 @@ def filmed(category, ranges, unit):
 def largest(errors, ranges, category, numbers=NUMBERS):
     """Search for the largest error of films within ranges.
 
-    The search takes decreasing steps from the worst of random films and a known film, then runs
-    differential evolution from the worst of all films. If COLORED numbers describe a film, more
-    films take part, and a step changes only some numbers.
+    The search takes decreasing steps from the worst of some random films and a known film. Then
+    differential evolution starts at the worst of all films. If COLORED numbers describe a film,
+    more films take part, and a step changes only some numbers.
     """
     rng = np.random.default_rng(SEED)
     many = numbers > NUMBERS

@@ -83,7 +83,7 @@ def grid():
 
 
 def moment_rows(mu, alpha):
-    """Contribution of coefficients to the nodes' mean, spread and skew, by view and roughness."""
+    """Matrix that maps coefficients to mean, spread and skew of nodes, by view and roughness."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
     terms = fit.monomials(mu, alpha)
     blocks = np.zeros((3, mu.size, 3, len(terms)))

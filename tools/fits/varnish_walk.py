@@ -27,10 +27,10 @@ ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def interface(w, alpha, ior, rng):
-    """Directions, z >= 0, in which light from w leaves the facets, and a mask of transmissions."""
+    """Directions, z >= 0, in which light from w leaves the facets, and which are transmitted."""
     out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
-    # State of each path: number of the path, direction, share of the facets' heights below the
-    # path, and whether the path is below the facets.
+    # The state of a path is its number, its direction, the share of the facets' heights below the
+    # path's height, and whether the path is below the interface.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:
         # By [Heitz2016], the distance to the next facet depends on Lambda, which is negative for

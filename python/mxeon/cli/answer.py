@@ -102,7 +102,7 @@ def _annotations(run: Run) -> Iterator[str]:
 
 
 def _details(run: Run) -> Iterator[Line]:
-    """A line for each check, and a line for each file of each library folder."""
+    """A line for each result of a check, and a line for each file of each library folder."""
     for each in run.results:
         numbers = each.reason or words.explanation(each)
         if each.verdict == PASSED:
@@ -441,9 +441,9 @@ def _remedy(run: Run) -> Iterator[str]:
 def _failures(run: Run) -> Iterator[Line]:
     """A line for each page or diagnosis that explains failures.
 
-    Failures with compared libraries come last. Otherwise, failures at the documents' own inputs
-    come first, then failures without a page, then failures in the light in which the pictures are
-    wrong.
+    Failures with compared libraries come last. The next criteria, in this order, put first the
+    failures at the documents' own inputs, the failures without a page, and the failures in the
+    light in which pictures are wrong.
     """
     failures = [each for each in run.results if each.verdict == FAILED]
     white = any(each.difference and each.difference.scene == "furnace" for each in failures)

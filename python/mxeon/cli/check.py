@@ -158,7 +158,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _baseline(options: argparse.Namespace) -> Report:
-    """Read the accepted run, valid or not, before --report moves earlier results away."""
+    """Read the accepted run first, because --report moves earlier results away."""
     from mxeon.conformance.run.journal import Journal
     from mxeon.report.diff import read_results
 
@@ -177,7 +177,7 @@ def _importing(progress: output.Progress) -> Callable[[Iterable[T], int], Iterat
     def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):
             yield outcome
-            # Block signals, which an import would swallow. A missing package is reported later.
+            # An import could swallow a signal. The report itself reports a missing package.
             with signals.block_signals(), suppress(ImportError):
                 import mxeon.report.page as _  # noqa: F401
 

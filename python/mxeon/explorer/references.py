@@ -69,7 +69,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
         return None
     if not (np.isfinite(direct).all() and np.isfinite(white).all()):
         return None
-    # Add the tolerances of all lobes. Layers also have the tolerances of throughputs.
+    # The tolerance is a sum over all lobes. Layers add the tolerances of throughputs.
     errors = []
     for node in lobes:
         if node.getCategory() in COMBINATIONS:

@@ -123,7 +123,7 @@ def measured_models(library: str, node: str) -> Models | None:
 
 
 def _nearest(case: Case) -> str:
-    """Name of the model with the nearest values. The albedo decides among equal BRDFs."""
+    """Name of the model with the nearest values. Among models of equal BRDF, compare albedos."""
     rows = {row.title: row for row in KNOWN_DEFECTS + DIFFUSE_MODELS}
     value, albedo = (
         min(diagnosis.distances.items(), key=lambda item: item[1], default=("", float("inf")))

@@ -211,7 +211,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
     differences: list[tuple[Picture, NDArray[np.float64]]] = []
     reference = None
     for one in pictures:
-        # Read pixels only once, because the pixels of a stored run are in files.
+        # For a stored run, each access to pixels reads a file, so access pixels only once.
         figures.append(_figure("image", title_of(one.library), "", srgb_encoded(one.image)))
         if one.reference is not None:
             reference = one.reference if reference is None else reference
@@ -256,7 +256,7 @@ def render(run: Run, file_of: Callable[[Picture], str]) -> Generator[str, None, 
     Pictures are read one by one. The page loads no files, runs only its own script, and also works
     without the script. Text from documents, shaders and hosts is escaped.
     """
-    # Failures for inputs that no document uses come last.
+    # If no document uses the inputs of a failure, the failure comes last.
     results = sorted(run.results, key=run.is_elsewhere)
     audits = [each for each in results if _is_audit(each)]
     checked = [each for each in results if not _is_audit(each)]

@@ -110,7 +110,7 @@ def signatures(text: str) -> Mapping[str, tuple[tuple[str, str], ...]]:
 
 
 def uses(text: str) -> Mapping[str, frozenset[str]]:
-    """For each function of a text, the functions that it calls directly or indirectly."""
+    """For each function of a text, the functions that are called directly or indirectly."""
     known: dict[str, frozenset[str]] = {}
     for match, body in _definitions(text):
         words = set(re.findall(r"\w+", body)) & known.keys()

@@ -149,7 +149,7 @@ class Walk(Nodes):
         return tuple(p.getName() for p in ports if self._values or p.getType() in CLOSURES)
 
     def _resolved(self, path: Path, name: str) -> tuple[Path, mx.Input | None]:
-        """The outermost input that supplies a node's input, and the path of the outermost node."""
+        """The outermost input that supplies a node's input, and the path of that input's node."""
         while port := self.port(path, name):
             if not port.hasInterfaceName() or len(path) < 2:
                 break

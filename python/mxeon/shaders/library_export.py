@@ -37,7 +37,7 @@ CLIENTS = {
 
 
 def recipes(folder: AnyPath) -> str:
-    """Instructions for loading a folder of eonlib, one line per client."""
+    """Instructions for loading a folder of eonlib, with one line for each renderer."""
     sources = source_folder(os.fspath(folder))
     return "\n".join(f"{name:<21} {text.format(folder, sources)}" for name, text in CLIENTS.items())
 

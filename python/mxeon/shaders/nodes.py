@@ -184,7 +184,7 @@ PORTS = {
 
 
 class Node(NamedTuple):
-    """A node: category, type, names of the nodes connected to its inputs, XML of other inputs."""
+    """A node with its category, its type, the nodes that supply inputs, and XML of other inputs."""
 
     category: str
     kind: str

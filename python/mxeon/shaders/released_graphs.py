@@ -24,7 +24,7 @@ def hidden() -> mx.Document | None:
 
 
 def installed() -> mx.Document:
-    """The data libraries of the installed MaterialX, even if a custom build hides it."""
+    """The data libraries of the installed MaterialX, even if a custom build replaces MaterialX."""
     return hidden() or load_library("stock")
 
 
@@ -59,7 +59,7 @@ def port_text(port: mx.PortElement) -> str:
 
 
 def differences(own: Mapping[str, str], right: Mapping[str, str]) -> tuple[str, ...]:
-    """For each difference between two graphs: the name, and the value in each graph."""
+    """For each difference between two graphs, the name and the values in both graphs."""
     return tuple(
         text
         for name in {**right, **own}

@@ -312,7 +312,7 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects, each with a title, a combination flag, shader text, and a function of checks."""
+    """Subjects, each with title, whether lobes are composed, shader text, and the checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
     # Films are checked before transmission, because transmission runs the same code without a film.

@@ -20,7 +20,7 @@ from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import figure, measured, write_measured
 
 CHECKED = [each for each in issues().values() if each.rows]  # issues with a table of checks
-# Renderers whose own nodes do not use MaterialX.
+# Renderers that have nodes of their own, which do not use MaterialX.
 OWN_NODES = ("three", "babylon", "shadewire", "three-gpu-pathtracer")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of documents that show one value of the original, as an output or as emitted light.
+"""Copies of documents, each of which shows one value as an output or as emitted light.
 
 A node may lie in the nodegraph that implements another node. To show an inner node, MaterialX first
 replaces the outer node by the nodes of the nodegraph, which keep their inputs.

@@ -41,7 +41,7 @@ def reachable(
 
 
 def heights(graph: Graph[Key], order: Iterable[Key]) -> dict[Key, int]:
-    """Number of keys on the longest path from each key to a key without parts, ends included."""
+    """For each key, the number of keys on the longest path to a key without parts."""
     height: dict[Key, int] = {}
     for key in order:
         height[key] = 1 + max((height[part] for part in graph[key]), default=0)
