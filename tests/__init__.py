@@ -3,5 +3,5 @@
 
 import os
 
-# NumPy's BLAS library reads this variable when NumPy is imported.
+# NumPy's BLAS library reads the number of threads when NumPy is imported.
 os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -34,7 +34,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 FOLDERS = (
     "docs|tests|tools|examples|libraries|genglsl|genosl|python|models|shaders|hosts|conformance"
 )
-# Placeholders for paths do not match the pattern.
+# Paths with a placeholder, such as `tests/<name>.py`, do not match this pattern.
 PATH = re.compile(rf"`((?:{FOLDERS})/[^`<\s:]*[^`<\s:.])(?::([\w.]+))?`")
 SCRIPT = re.compile(r"python -m ((?:tests|tools)[\w.]*\w)")
 NAME = re.compile(r"`(mxeon(?:\.\w+)+)")

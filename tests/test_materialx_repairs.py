@@ -90,7 +90,7 @@ CASES = [(version, row) for version, rows in ROWS.items() for row in sorted(rows
 
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory, failing):
-    """Function that returns verdict and diagnosis of each row, for a repaired version of MaterialX.
+    """Function that returns verdict and diagnosis by row of the ledger, for a repaired MaterialX.
 
     On the main branch, defects that are already repaired must pass without a patch.
     """
@@ -113,7 +113,7 @@ def judged(tmp_path_factory, failing):
 
 
 def verdicts(folder, package, files, rows):
-    """Verdict and diagnosis of each row, with a patched MaterialX."""
+    """Verdict and diagnosis by row of the ledger of defects, with a patched MaterialX."""
     ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
     path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}

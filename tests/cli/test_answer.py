@@ -110,7 +110,7 @@ def test_what_fails_for_other_inputs_than_the_documents_comes_last():
         {"a.mtlx": {GLASS: (ZERO,)}},
     )
     run = Run("1", {}, (), results, contents=contents, unreached=unreached)
-    # The inputs of document `a` are known never to reach an index of refraction of 0.
+    # The inputs of document `a` never result in an index of refraction of 0.
     assert run.is_elsewhere(results[1], "a.mtlx") and not run.is_elsewhere(results[1])
     [entry] = json.loads(to_json(run))["elsewhere"]
     place = {"check": "finite", "subject": GLASS, "host": "gl", "library": "eonlib"}
@@ -236,7 +236,7 @@ def test_a_document_that_one_library_lacks_is_refused_in_its_column(tmp_path, mo
     assert printed.out.startswith(f"{file} with stock was not checked: 1 error. ")
     assert "with stock MaterialX" in printed.out and "refused" in printed.out
     assert printed.err.endswith("(with stock)\n")
-    # If stock MaterialX is checked only for comparison, eonlib decides the document's result.
+    # If stock MaterialX is only compared, eonlib's results decide the verdict on the document.
     assert main(["check", str(file), "--workers", "0"]) == 0
     printed = capsys.readouterr()
     assert printed.err == "" and "not judged" in printed.out and "(with stock)" in printed.out

@@ -277,7 +277,7 @@ def test_functions_that_write_refuse_likewise(inputs):
 
 
 def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
-    """The outputs may also lie in the folder of a library that the command reads."""
+    """Outputs may even lie in a library's folder that the command reads."""
     monkeypatch.chdir(tmp_path)
     os.mkdir("lib")
     (tmp_path / "lib" / "own.mtlx").write_text('<materialx version="1.39"></materialx>')

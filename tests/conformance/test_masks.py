@@ -55,7 +55,7 @@ NESTED = {
 
 
 def furnace(gl, monkeypatch, library, folded, opaque, nodes):
-    """Light reflected in a white environment; if `folded`, lobe weights include mix weights."""
+    """Light reflected in a white environment. If `folded`, mix weights scale lobe weights."""
     context_of = generation.context_of
 
     def context(*arguments):

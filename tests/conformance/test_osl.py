@@ -19,7 +19,7 @@ EXAMPLES = (
     *("brushed_metal_wedge", "layered_white_furnace", "mixed_lobes", "openpbr_rough_base"),
     *("plaster", "standard_surface_rough_base", "tempered_steel", "velvet"),
 )
-# No OSL closure has the input `color82`.
+# These nodes use the input `color82`, which no OSL closure has.
 COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")
 # Error relative to the larger of 1 and pi f cos: 16 float32 roundings of an argument, times 4,
 # because a microfacet distribution amplifies the relative error of its alpha.

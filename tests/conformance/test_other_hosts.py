@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes on hosts other than gl: one check for each kind of behavior that depends on the host.
+"""Nodes on hosts other than gl. One check covers each behavior that depends on the host.
 
 `test_upstream.py` covers the failures on Cycles that docs/upstream describes.
 """

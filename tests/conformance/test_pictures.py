@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of documents: inputs that the reference computes or the host provides, and messages."""
+"""Pictures of documents whose inputs the reference computes or the host provides; messages."""
 
 from dataclasses import replace
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""On gl, eonlib passes every check, and stock MaterialX fails exactly as docs/upstream states."""
+"""On the host gl, eonlib passes all checks. Stock MaterialX fails as docs/upstream states."""
 
 from dataclasses import astuple, replace
 from itertools import product
@@ -227,7 +227,7 @@ NO_CAUSE, CHOICE = Diagnosis(), "genglsl_microfacet_compensation"
         ("environment", SHEEN, "gl", "stock", FAILED, 0.0889, FITTED, {"genglsl_conty_kulla_fit"}),
         ("environment", SHEEN, "gl", "stock", FAILED, 1e7, FITTED, set()),
         ("environment", SHEEN, "gl", "stock", FAILED, 0.05, UNKNOWN, set()),
-        # A consequence of a defect in stock MaterialX links to the page on that defect.
+        # A failure that follows from a defect in stock MaterialX links to the page on this defect.
         ("inputs", QON, "cycles", "stock", FAILED, 0.1, NO_CAUSE, {"cycles_rho_cubed"}),
         ("inputs", QON, "cycles", "eonlib", FAILED, 0.1, NO_CAUSE, set()),
         # A page on an ambiguity of the specification explains no failed check.

@@ -82,7 +82,7 @@ def frame(stage, name=None, size=None):
 
 
 def picture(stage, name="left"):
-    """Square of pixels around the sphere, which match the pixels of the gl host's picture."""
+    """Square around the sphere, cut from a frame, with the same pixels as a picture of gl."""
     whole = frame(stage, name)
     diameter = stage.evaluate("mxeon.stage.diameter()")
     top, left = ((length - diameter) // 2 for length in whole.shape[:2])

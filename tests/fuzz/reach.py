@@ -42,7 +42,7 @@ APART = NAMES | {"name", "value"}
 
 @dataclass(frozen=True)
 class Place:
-    """An attribute of the element with the given index in a document."""
+    """An attribute, as the index of an element in a document and the attribute's name."""
 
     number: int
     attribute: str
@@ -106,7 +106,7 @@ def reached(root, groups, targets=TARGETS):
 
 
 def unjudged(root, found, targets=TARGETS):
-    """Hostile texts that reach a shader, or that are refused without naming the attribute."""
+    """Hostile texts that reach a shader, or whose refusal does not name the element."""
     elements = list(root.iter())
     ways, alike = defaultdict(set), {}
     for place, each in found.items():
@@ -140,13 +140,13 @@ def _escaped(text):
 
 
 def _judged(element, place, document, targets):
-    """Whether hostile text reaches no source, or is refused with a line that names the place."""
+    """Whether hostile text reaches no source, or is refused with a line that names the element."""
     for target in targets:
         try:
             sources = _sources(document, target)
         except DocumentError as error:
             said = str(error)
-            if "must give" in said:  # no other target refuses the text
+            if "must give" in said:  # only this target refuses the text
                 continue
             # If a file prefix is bad, the message names the file instead of the element.
             named = "file" if place.attribute == "fileprefix" else element.tag
@@ -200,14 +200,14 @@ def _note(source, marks, found):
 
 
 def _context(before):
-    """Context of a mark, given the preceding text of its line: quoted, comment or bare."""
+    """Context of a mark (quoted, comment or bare), given the preceding text of the line."""
     if "//" in QUOTED.sub("", before):
         return "comment"
     return "quoted" if before.count('"') % 2 else "bare"
 
 
 def _marked(root, places):
-    """Text of a document with a mark in each of the given places, and the place of each mark."""
+    """Text of a document with a mark in each attribute of `places`, and the place of each mark."""
     root, marks, aliases = deepcopy(root), {}, {}
     elements = list(root.iter())
     for place in places:

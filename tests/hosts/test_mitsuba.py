@@ -49,7 +49,7 @@ def mi():
 
 
 def bsdf(name, color=COLOR, **inputs):
-    """Plugin properties; unless given as arguments, inputs come from INPUTS."""
+    """Plugin properties. Inputs that are not given as arguments come from INPUTS."""
     rgb = {"type": "rgb", "value": list(color)}
     return {"type": name, "reflectance": rgb} | INPUTS[name] | inputs
 

@@ -24,8 +24,8 @@ def test_a_pixel_at_the_edge_has_the_share_of_the_sphere_in_it(hosts):
     host = hosts("gl")
     [shader] = host.compile(WHITE)
     image = still(host, shader, replace(FURNACE, size=SIZE))
-    # About 4 SIZE pixels lie at the edge, and each has 16 samples, so the disk's area is exact to
-    # 0.1 percent.
+    # The disk's edge crosses about 4 * SIZE pixels, and each pixel has 16 samples. The disk's area
+    # is therefore exact to 0.1 percent.
     np.testing.assert_allclose(image.mean(), np.pi / 4.0, rtol=1e-3)
     assert len(np.unique(image.round(4))) > 8
 

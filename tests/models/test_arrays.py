@@ -37,7 +37,7 @@ ROWS, FEW = 48, 4
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)
-# Functions that JAX takes seconds to compile. With JAX, only the called functions are tested.
+# JAX takes seconds to compile these functions, so tests with JAX use only the functions' parts.
 LONG = ("chiang_hair_bcsdf", "film_albedo_dir", "dielectric_albedo_dir", "conty_kulla_albedo_dir")
 LONG += ("transmittance_dir",)
 ENDS = ("brdf", "albedo_dir", "sample", "pdf")
@@ -275,14 +275,14 @@ def moved(function, arrays, switches, name):
 
 
 def slopes(f, step):
-    """One-sided third-order derivatives, forward then backward, with steps of `step` * WIDTH."""
+    """Forward and backward differences with errors of third order, with steps of `step` * WIDTH."""
     with np.errstate(invalid="ignore"):
         changes = [18 * f[k] - 9 * f[2 * k] + 2 * f[3 * k] - 11 * f[0] for k in (step, -step)]
         return [each / (6 * k * WIDTH) for each, k in zip(changes, (step, -step), strict=True)]
 
 
 def differences(function, arrays, switches, name):
-    """Finite differences of all rows, and which are reliable, for each component of an array."""
+    """Finite differences of all rows, and a mask of reliable rows, by component of an array."""
     for k, f in enumerate(moved(function, arrays, switches, name)):
         low, high, _ = RANGES[name] if name in RANGES else RANGES["mu" if k == 2 else "cos_theta"]
         x = arrays[name].reshape(len(arrays[name]), -1)[:, k]

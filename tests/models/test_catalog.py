@@ -81,7 +81,7 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
     grid = np.stack(np.meshgrid(*[np.arange(count)] * 2), axis=-1).reshape(-1, 2)
     wi, pdf = row.sample(wo, (grid + k.random(grid.shape)) / count, **inputs)
     assert np.allclose(row.pdf(wo, wi, **inputs), pdf, rtol=1e-9)
-    # The values are 0 on a side to which the model scatters no light.
+    # If a model scatters no light to a side of the surface, the values on this side are 0.
     value, below = row.bsdf(wo, wi, **inputs), wi[:, 2] < 0.0
     if row.lights != "all sides":
         assert not value[below if row.lights == "front" else ~below].any()

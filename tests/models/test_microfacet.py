@@ -58,7 +58,7 @@ def fresnel_exact(name, c, channel):
         r0, t, r90 = (mp.mpf(color[channel]) for color in COLORS)
         m = mp.mpf(1) / 7
         a = (r0 + (r90 - r0) * (1 - m) ** 5) * (1 - t) / (m * (1 - m) ** 6)
-        # The curve of OpenPBR for metals.
+        # The Fresnel curve that OpenPBR specifies for metals.
         return max(r0 + (r90 - r0) * (1 - c) ** 5 - a * c * (1 - c) ** 6, 0)
     if name == "dielectric_bsdf":
         g = mp.sqrt(mp.mpf(1.5) ** 2 + c * c - 1)
@@ -348,7 +348,7 @@ def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle
         return D * c * 2.0 * mu_i / (smith[0] * mu_i + smith[1] * mu)
 
     def share(t, low, high):
-        # Near the lower limit, the reflectance grows like a square root.
+        # The reflectance has an infinite slope in c at the critical angle, but a finite slope in t.
         c = low + (high - low) * t * t * (3.0 - 2.0 * t)
         return models.fresnel_dielectric(c, ior) * around(c) * 6.0 * t * (1.0 - t) * (high - low)
 

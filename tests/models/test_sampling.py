@@ -256,7 +256,7 @@ def upper_error(mu_o):
 
 
 def excess(mu, roughness):
-    """Relative excess of the samples' true density over `eon_pdf`, and nodes' probabilities."""
+    """Relative excess of the samples' true density over `eon_pdf`, and probability of each node."""
     wi, solid_angle = hemisphere(mu, 32)
     mu_i, s = wi[:, 2], direction(mu)[0] * wi[:, 0]
     losses = diffuse.fon_loss_mu(mu_i) * diffuse.fon_loss_mu(mu)

@@ -110,7 +110,7 @@ def schlick(mu, thickness, index, color0, form=TEXT):
 
 
 def bare(thickness):
-    """For three substrates, reflectance under a film of the given thickness, and without a film."""
+    """Reflectance of three substrates, with a film of the given thickness and without a film."""
     return (
         (dielectric(MU, thickness, 1.4, 1.8), fresnel_dielectric(MU, 1.8)[:, np.newaxis]),
         (conductor(MU, thickness, 1.4, *GOLD), fresnel_conductor(MU, *GOLD)),

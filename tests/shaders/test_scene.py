@@ -17,7 +17,7 @@ def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
     outward = seen - CENTER @ OBJECT
     ball = np.abs(np.linalg.norm(outward, axis=-1) - RADIUS) <= CLOSE
     assert 0.7 < ball.mean() < 0.9
-    # A normal by central differences has an error below the squared step divided by the distance.
+    # The tolerance is the step of the central differences plus twice the tolerance of a point.
     away = np.abs(points.normal[points.mask][ball] * RADIUS - outward[ball]).max(axis=-1)
     # The remaining 2 % of the points lie at edges of grooves.
     assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE

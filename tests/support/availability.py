@@ -53,7 +53,7 @@ def package(name):
 
 @contextmanager
 def available(host):
-    """Skip the test if the `with` block raises NotRun, or fail if the host is required."""
+    """Skip the test if the `with` block raises NotRun. If the host is required, fail instead."""
     try:
         yield
     except NotRun as reason:

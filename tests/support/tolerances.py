@@ -143,7 +143,7 @@ ROUND_TRIP = 1e-14
 
 # --- pictures ----------------------------------------------------------------------------------
 
-# Error of an OpenGL picture times cos(theta_o): 16 roundings of a pixel's point, 32 of its value.
+# Error of an OpenGL picture times cos(theta_o): 16 roundings of a pixel's point, 32 of the value.
 PICTURE = (16 + 32) * ROUNDING_32
 
 # Maximum number of 200 kits with pure noise that may be judged biased. Each kit has a false-alarm
@@ -167,7 +167,7 @@ PRINTED = 0.05 + 0.05 + 0.01
 FIT_GGX = 4.92e-4 + 1e-6
 FIT_CONTY_KULLA = 1.51e-3 + 1e-5
 
-# Error of the quadrature for the fits. The panels shrink to 4^-9 of the integrand's width.
+# Error of the quadrature that checks the fits. Panels shrink to 4^-9 of the integrand's width.
 FIT_QUADRATURE = 1e-7
 
 # Relative error of the Fresnel reflectance of a dielectric, and of its average, for an index of
@@ -220,7 +220,7 @@ MITSUBA_COAT = 24 * ROUNDING_32
 # plus 3 roundings. The measured error is 1.5e-7.
 MITSUBA_DENSITY = 2e-7 + 3 * ROUNDING_32
 
-# Documented error of the curves of a dielectric over EON.
+# Documented error of the fitted curves that the model "dielectric over EON" uses.
 COAT = 2e-7
 # Error of a quadrature with 256 x 256 nodes, for the model "dielectric over EON" at alpha = 0.5.
 # The specular lobe causes the largest error, for a view at mu = 0.1.
