@@ -726,7 +726,7 @@ class Pictures(Backend):
 
 
 class Spheres(Pictures):
-    """One picture per light and material, whose lit points far from the rim are the samples."""
+    """One picture per light and material. The samples are lit points far from the rim."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     all_samples = True
@@ -782,7 +782,7 @@ def lit_pairs(normal: Array, scene: Scene) -> Pairs:
 
 
 class CyclesPictures(Spheres):
-    """Pictures by Cycles of a rough diffuse node, for which Cycles has its own closure."""
+    """Pictures by Cycles of a rough diffuse node, which Cycles renders with its own closure."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
     engine_errors: ClassVar[Errors] = {

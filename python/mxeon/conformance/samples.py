@@ -43,8 +43,8 @@ class Counts:
     pairs: int = PAIRS  # random pairs
     few: int = FEW  # random pairs in controls and in expensive checks
     diagnosed: int = FEW  # pairs per batch in a diagnosis
-    albedos: int = 1 << 7  # views with measured albedos
-    materials: int = 64  # materials with integrated or averaged values
+    albedos: int = 1 << 7  # views whose albedos are measured
+    materials: int = 64  # materials in checks of integrals and averages
     nodes: int = 48  # quadrature nodes per axis
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 

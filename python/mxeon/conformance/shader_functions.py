@@ -80,8 +80,8 @@ def exact(function: str) -> tuple[Array, Array]:
     """Values of a shader function in NumPy, and a factor for the errors of the shader function.
 
     The factor is pi cos(theta_i) for a BRDF and 1 for an albedo. For other functions, the factor is
-    the inverse of the condition number, which is the larger of 1 and the value, plus the absolute
-    derivative of the value with respect to each argument.
+    the inverse of the condition number. The condition number is the sum of max(1, |value|) and of
+    the absolute derivatives of the value with respect to all arguments.
     """
     columns = random_columns()
     values = _expected(function, columns)

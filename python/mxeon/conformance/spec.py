@@ -48,7 +48,7 @@ class Input:
     materials: tuple[ArrayLike, ...] = ()
     variable: str = ""  # shader variable that has the default and that hosts set
     default: ArrayLike = 1.0  # value in documents that must set the input
-    beyond: tuple[float, ...] = ()  # values outside the range that checks also use
+    beyond: tuple[float, ...] = ()  # values outside of [low, high] that checks also use
     ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps the input
 
 
@@ -88,7 +88,7 @@ def draw(
 
 
 def broadcast_inputs(batch: Batch) -> dict[str, Array]:
-    """The inputs of a batch, repeated so that each pair has a row."""
+    """The inputs of a batch. Constant inputs are repeated for each pair of directions."""
     count, inputs = len(batch.wo), dict(batch.inputs)
     for name, values in inputs.items():
         if np.shape(values)[:1] != (count,):

@@ -109,7 +109,7 @@ def _clashes(library: str) -> Faults:
         search = library_tree.search_path(name)
         return dict.fromkeys(texts.clashes(load_library(name), target, search, twice), target)
 
-    targets: dict[texts.Clash, str] = {}  # the first target that has the clash
+    targets: dict[texts.Clash, str] = {}  # first target with each clash
     for target in SOURCES:
         known = clashes("stock", target)
         new = {each: target for each in clashes(library, target) if each not in known}

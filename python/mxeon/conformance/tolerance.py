@@ -71,7 +71,7 @@ def relative(measured: Array, expected: Array) -> Array:
 
 
 def mean_error(measured: Array, expected: Array) -> Array:
-    """Largest difference between measured and expected means over all rows, repeated for every row.
+    """Largest difference between the means of measured and expected values, repeated for every row.
 
     The mean removes the noise of random paths.
     """

@@ -88,7 +88,7 @@ class Kind(Enum):
     UNKNOWN = "unknown"
     TEXT = "text"  # the message of a compiler, a renderer or a document
     FOLLOWS = "follows"  # a consequence of another failure with its own result
-    INPUT = "input"  # an input value in the document that the model does not cover
+    INPUT = "input"  # an input value that the model does not cover
     CONTROL = "control"  # the negative control passed
 
 

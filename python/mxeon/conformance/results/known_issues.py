@@ -46,7 +46,7 @@ class Issue:
     # Host that shows the defect, by default "gl". Generated text has the host "source". Defects
     # that no check shows have the host "".
     host: str = ""
-    also: tuple[str, ...] = ()  # other hosts with the defect, besides GENERATED_GLSL for "gl"
+    also: tuple[str, ...] = ()  # other hosts with the defect; "gl" implies GENERATED_GLSL
     # Library whose results show the defect: EONLIB for a defect of graphs, because graphs need
     # correct lobes, and RENDERER_NODES for a defect of a renderer's own nodes.
     library: str = STOCK

@@ -36,7 +36,7 @@ class StoredImage:
         """Whether the file exists and is unchanged since it was written."""
         if files.digest(self.path) != self.path.stem:
             return False
-        try:  # map the file, because a header may declare any number of pixels
+        try:  # memory-map the file, because a header may declare any number of pixels
             pixels = np.lib.format.open_memmap(self.path, mode="r")
         except (OSError, ValueError, OverflowError):
             return False

@@ -135,7 +135,7 @@ class Judge:
         return Findings((result,), images)
 
     def _document(self, task: Task, host: base.Host | None = None) -> Findings:
-        """Findings of a document, from pictures on a host or from generated shaders."""
+        """Findings of a document, from a host's pictures or (without a host) generated shaders."""
         path = Path(task.subject)
         images: tuple[results.Picture, ...] = ()
         try:
