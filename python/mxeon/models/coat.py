@@ -343,7 +343,7 @@ def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, coat: Coat) -> Arr
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
 
-TERMS, SMOOTH = 24, 16  # numbers of Chebyshev coefficients, for E_single, and for D and b
+TERMS, SMOOTH = 24, 16  # Chebyshev coefficients: TERMS for E_single, SMOOTH for D and b
 FINE, BELOW = 48, 24  # numbers of quadrature nodes within and beyond the critical angle
 
 

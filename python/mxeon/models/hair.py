@@ -302,7 +302,7 @@ DEFAULTS: dict[str, float | tuple[float, ...]] = {
 
 
 def _checked(inputs: dict[str, ArrayLike], wo: arrays.Numbers) -> dict[str, Array]:
-    """All inputs of the node, validated, as arrays of the library of `wo`; colors are (..., C)."""
+    """Validated inputs of the node, as arrays of wo's library. Colors have shape (..., C)."""
     if unknown := sorted(set(inputs) - set(DEFAULTS)):
         raise TypeError(f"inputs must be among {', '.join(DEFAULTS)}; got {', '.join(unknown)}")
     values = {}

@@ -117,7 +117,7 @@ SIDES = {"front": 1.0, "back": -1.0}
 
 @dataclass(frozen=True)
 class ModelSampler:
-    """Two functions, `sample`, which returns (wi, pdf), and `pdf`, which returns the density at wi.
+    """A pair of functions: `sample` returns (wi, pdf), and `pdf` returns the density at wi.
 
     - `side`: 1 if all samples are above the horizon, -1 if all are below the horizon, else None.
     """

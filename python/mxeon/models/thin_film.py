@@ -297,7 +297,7 @@ Polarizations: TypeAlias = tuple[Interface, Interface]
 
 @dataclass(frozen=True)
 class Form:
-    """Choices that the specification leaves to implementations, and one known error, `share`.
+    """Choices that the specification leaves to implementations. `share` can model a known error.
 
     - `matrix`: Rows of the matrix from CIE XYZ to linear RGB.
     - `orders`: Number M of orders; None sums all orders.

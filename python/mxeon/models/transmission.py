@@ -90,7 +90,7 @@ def refracted(wo: Array, normal: Array, ior: Array) -> Array:
 
 
 def transmitting_facet(wo: Array, wi: Array, ior: Array) -> tuple[Array, Array, Array]:
-    """Normal wh of the microfacet that refracts wo to wi, |wo . wh| and Jacobian |d wh / d wi|.
+    """For the facet that refracts wo to wi: normal wh, cosine |wo . wh| and Jacobian |d wh / d wi|.
 
     All three results are 0 if no microfacet refracts wo to wi. The Jacobian is
     n^2 |wi . wh| / |wo + n wi|^2 with n = ior: [Walter2007], Eq. (17).
@@ -329,7 +329,7 @@ class Reading:
     def at(self, cosine: Array, ior: Array, **inputs: Array) -> Array:
         """F for the cosine wo . wh, or 1 if light is totally reflected.
 
-        If `ior` is below 1, wo is inside the solid, and F is evaluated for the cosine outside.
+        If `ior` is below 1, wo is inside the solid, and F uses the cosine outside the solid.
         """
         xp = array_namespace(cosine, ior)
         squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / xp.maximum(ior, 1e-50) ** 2

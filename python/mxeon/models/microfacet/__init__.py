@@ -80,7 +80,7 @@ WHITE_CURVE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.o
 
 @dataclass(frozen=True)
 class Pair:
-    """A block of directions and roughnesses, components on the first axis, and a Fresnel curve."""
+    """A Fresnel curve, and a block of directions and roughnesses with components on axis 0."""
 
     wo: Array
     wi: Array
@@ -201,7 +201,7 @@ class Lobe:
 
     factor: Callable[[Pair], Array | float] = compensation
     visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i)
-    alpha: Callable[[Array], Array] = lambda roughness: roughness  # roughness to alpha
+    alpha: Callable[[Array], Array] = lambda roughness: roughness  # converts roughness to alpha
     scale: float = 1.0
 
     def value(self, pair: Pair, wh: Array) -> Array:

@@ -69,7 +69,7 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """F_ss of a Schlick curve with exponent 5; MaterialX's F_ss of all curves since June 2026."""
+    """F_ss of a Schlick curve with exponent 5, in MaterialX for all curves since June 2026."""
     return normal + (grazing - normal) / 21.0
 
 
@@ -233,6 +233,6 @@ def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Arr
 
 
 def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Cosine of wo's polar angle and geometric mean of the alphas, both at least CLAMP."""
+    """Cosine of wo's polar angle, and geometric mean of the alphas. Each is at least CLAMP."""
     alpha = np.sqrt(np.maximum(inputs["roughness"], CLAMP).prod(axis=-1))
     return np.clip(wo[:, 2], CLAMP, 1.0), alpha

@@ -220,7 +220,7 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
     return roughness_anisotropy(1.0 - g, a)
 
 
-# Numbers of Gauss-Legendre nodes per panel, panels between wo and the normal, elements per block.
+# Three numbers: nodes per Gauss-Legendre panel, panels from wo to the normal, elements per block.
 RULE_NODES, PANELS, ALBEDO_BLOCK = 28, 3, 2**10
 RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 

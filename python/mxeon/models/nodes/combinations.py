@@ -27,9 +27,9 @@ from mxeon.models.sheen import (
 
 ROUGHNESS = ("top/roughness", "base/roughness")
 COLORS = ("top/color", "base/color")
-AMOUNT = "lobe/mix"  # weight of `top` or of the sum
+AMOUNT = "lobe/mix"  # weight of `top`, or of `top` + `base`
 AMOUNT_ABOVE = "mixed/mix"  # weight of `top` + `base` in the mix that covers `base`
-FACTOR = "lobe/in2"  # factor of `top` or of the sum
+FACTOR = "lobe/in2"  # factor of `top`, or of `top` + `base`
 # The first input is the weight of a white opaque lobe in a mix with `top`. The second input is the
 # weight of this mix in a mix with another white opaque lobe.
 MASKS = ("inner/in1", "outer/in1")
@@ -135,7 +135,7 @@ def _masked(top: Bsdf, base: Bsdf, inputs: Inputs, finish: Finish = lambda lobe:
 
 
 def _unscaled(combine: Combine) -> Variant[Scattering]:
-    """The permitted variant in which a scaled lobe keeps the throughput before scaling."""
+    """The permitted variant in which scaling a lobe does not change the lobe's throughput."""
     title = "the throughput of the lobe before it is scaled"
     return _variant(title, combine, layered=False, permitted=True)
 

@@ -264,7 +264,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
     for title, form, permitted in FORMS:
-        one = form == MIXED and row.category == "dielectric_bsdf"  # all channels have the same IOR
+        one = form == MIXED and row.category == "dielectric_bsdf"  # channels do not differ
         if one or (form.share != 1.0 and not schlick):
             continue
         lobes: list[tuple[str, Lobe | None]] = [(title, None)]
@@ -312,7 +312,7 @@ class Transmission:
     reflected: Callable[[Array, Inputs], Array]
     tint: Callable[[Inputs], Array]
     fresnel: Callable[[Array, Inputs], Array]
-    ior: Callable[[Inputs], Array]  # IOR of the surface
+    ior: Callable[[Inputs], Array]  # index of refraction of the surface
 
 
 TRANSMISSIONS = {

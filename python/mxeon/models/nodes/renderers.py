@@ -16,7 +16,7 @@ from mxeon.models.nodes.microfacets import CONDUCTOR_LOBE, DIELECTRIC_LOBE, SCHL
 from mxeon.models.nodes.node import Inputs, Scattering, Variant, white
 from mxeon.models.transmission import index_of
 
-INDEX = (1.001, 5.0)  # range to which BSDL clamps the IOR of a dielectric
+INDEX = (1.001, 5.0)  # BSDL clamps indices of refraction to this range
 
 
 def _indexed(inputs: Inputs) -> dict[str, Array]:
@@ -107,7 +107,7 @@ def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Ar
 
 
 def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
-    """`_lossless` of a dielectric with IOR above 1, otherwise the albedo of a smooth dielectric."""
+    """`_lossless` for an index of refraction above 1, or else the albedo of a smooth dielectric."""
     smooth = DIELECTRIC_LOBE.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
     rough = _lossless(DIELECTRIC_LOBE, wo, inputs)
     return np.where(np.reshape(inputs["ior"], (-1, 1)) > 1.0, rough, _largest(smooth))

@@ -142,7 +142,7 @@ def lerp(first: ArrayLike, second: ArrayLike, share: ArrayLike) -> Array:
 
 
 def f0_from_ior(eta: ArrayLike) -> Array:
-    """Reflectance at normal incidence of a dielectric with the relative IOR `eta`."""
+    """Normal-incidence reflectance of a dielectric whose relative index of refraction is `eta`."""
     eta = np.asarray(eta, np.float64)
     return np.asarray(np.square((eta - 1.0) / (eta + 1.0)))
 

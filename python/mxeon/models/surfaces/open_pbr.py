@@ -94,13 +94,13 @@ def base_alphas(p: Parameters) -> Array:
 
 
 def specular_eta(p: Parameters) -> Array:
-    """Relative IOR of the base without `specular_weight`, inverted if the coat's IOR is larger."""
+    """The base's relative index of refraction below the coat, inverted if the coat's is larger."""
     below = p["specular_ior"] / p["coat_ior"]
     return lerp(p["specular_ior"], np.maximum(below, 1.0 / below), p["coat_weight"])
 
 
 def modulated_eta(p: Parameters) -> Array:
-    """Relative IOR for which `specular_weight` scales the reflectance of the base."""
+    """Relative index of refraction for the base's reflectance scaled by `specular_weight`."""
     eta = specular_eta(p)
     scaled = np.minimum(p["specular_weight"] * lobes.f0_from_ior(eta), MOST_REFLECTIVE)
     epsilon = np.sign(eta - 1.0) * np.sqrt(scaled)
