@@ -320,7 +320,7 @@ class Comparison:
         return error
 
     def _text_error(self, own: mx.NodeDef, released: mx.NodeDef) -> float:
-        """The largest difference of two nodes' values. Raise NotRun for nodes without values."""
+        """The largest difference of two nodes' values. Raise NotRun if values cannot be compared."""
         outputs, inputs = released.getActiveOutputs(), released.getActiveInputs()
         kinds, input_kinds = ({port.getType() for port in ports} for ports in (outputs, inputs))
         sides = (own, self._library), (released, "stock")
