@@ -104,7 +104,7 @@ def moments_fit():
 
 
 def facet_moments(mu, alpha):
-    """Mean, standard deviation and skewness of cosines between 16 visible facets and the view."""
+    """Mean, standard deviation and skewness of the cosine between visible facets and the view."""
     cosines, weights = (np.array(each) for each in zip(*sampled_facets(mu, alpha), strict=True))
     weights /= weights.sum(axis=0)
     mean = (weights * cosines).sum(axis=0)

@@ -350,7 +350,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
     rank = min(_rank(run, each) for each in results)
     wrong = [each for each in results if rank != RIGHT and _rank(run, each) == rank]
     direct = [each for each in results if each.check in DIRECT]
-    # Prefer the error in direct light, which is the most informative.
+    # The error in direct light is the most informative, so this error is preferred.
     shown = max(
         wrong or direct or results,
         key=lambda each: (each.check in DIRECT, (each.error or 0.0) / (each.tolerance or 1.0)),

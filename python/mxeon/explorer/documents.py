@@ -136,7 +136,7 @@ def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict
 
 
 def _pages(titles: Iterable[str], library: str) -> tuple[str, ...]:
-    """Names of pages on defects that change pictures of nodes with these titles."""
+    """Names of pages on defects that change pictures of nodes with the given titles."""
     return tuple(
         issue.page
         for issue in issues().values()

@@ -360,7 +360,7 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
 
 
 def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
-    """Numbers that grew by more than noise. Numbers of all samples come first.
+    """Numbers that grew by more than noise. Numbers for all samples precede numbers for regions.
 
     A result without samples has a single number, the error. If a number grows by less than the
     tolerance, the growth is ignored.

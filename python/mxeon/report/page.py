@@ -99,7 +99,7 @@ def checks_by_place(
 def matrix(
     places: Mapping[Place, Sequence[CheckResults]],
 ) -> list[tuple[str, list[CheckResults | None]]]:
-    """Rows of the table of checks: a key, and for each host and library CheckResults or None."""
+    """Rows of the table of checks: the key, and CheckResults or None by host and library."""
     columns = [{check.key: check for check in checks} for checks in places.values()]
     keys = dict.fromkeys(key for column in columns for key in column)
     return [(key, [column.get(key) for column in columns]) for key in keys]

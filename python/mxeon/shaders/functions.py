@@ -17,7 +17,7 @@ Parts = dict[str, list[str]]  # tokens of each function or constant, keyed by na
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # file that includes all other files of shader functions
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
-# Files that together include all text that GLSL and OSL share.
+# With included files, these files contain all functions that exist in both GLSL and OSL.
 TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")
 INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)

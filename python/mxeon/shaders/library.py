@@ -187,7 +187,7 @@ def load_library(
 
 @lru_cache(maxsize=LOADED)
 def read_library(library: str, profile: str | None, definitions: tuple[str, ...]) -> mx.Document:
-    """Cached part of `load_library`. All arguments are required, so equal calls share a key."""
+    """Cached part of `load_library`. No argument has a default, so equal calls have equal keys."""
     check_version()
     if profile is not None:
         assert_known("profile", profile, PROFILES)

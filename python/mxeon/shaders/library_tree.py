@@ -50,7 +50,7 @@ class Tree:
     kind: str  # WHOLE, PART or OVERLAY
     own: tuple[str, ...]  # relative paths of the folder's documents and sources
     package: tuple[str, ...]  # relative paths of installed files that complete the folder
-    # The target of the link at each path below `libraries`; empty for an overlay.
+    # For each path of a link below `libraries`, the target of the link. An overlay has no links.
     links: Mapping[str, str] = field(repr=False)
 
 

@@ -155,8 +155,8 @@ def clashes(
     for each in document.getNodeDefs():
         if source := source_of(each.getImplementation(target)):
             nodes.setdefault(source[1], each.getName())
-    # Files that contain a definition, by definition. Each file comes with a node that uses the
-    # file, and is marked if another file includes the file.
+    # For each definition, the files that contain the definition. Each file has a node that uses the
+    # file, and a mark if another file includes the file.
     owners: dict[Definition, dict[tuple[Path, bool], str]] = defaultdict(dict)
     for path, node in nodes.items():
         for file in files(path, search.asString()):

@@ -28,7 +28,7 @@ MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
-    """Measurements by page: the rows of the table, the host, the versions and the diagnosis."""
+    """For each page, the measured rows of the table, the host, the versions and the diagnosis."""
     return dict(json.loads(MEASURED.read_text(encoding="utf-8")))
 
 

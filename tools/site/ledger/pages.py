@@ -110,7 +110,7 @@ def short_diff(patch: Path) -> tuple[str, int]:
 
 
 def outcome(issue: Issue) -> str:
-    """Sentence about checks that pass or fail with a page's patch and all required patches."""
+    """Sentence on the checks that pass, and that still fail, after a page's patch is applied."""
     checks: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     for check, subject in issue.repaired:
         checks[subject, "passes", "pass"].append(f"`{check}`")

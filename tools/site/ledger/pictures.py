@@ -117,7 +117,7 @@ def draw(folder: str, *pages: str) -> None:
 
 
 def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
-    """A page's picture with stock MaterialX, to which `repair` applies the required patches."""
+    """A page's picture with stock MaterialX, or with patched MaterialX if `repair` is true."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     if repair:
         names = needed(page)
