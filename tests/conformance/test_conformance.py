@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`check` judges its tasks or reports them as not run, and refuses invalid arguments."""
+"""`check` judges tasks or reports tasks as not run, and refuses invalid arguments."""
 
 import re
 

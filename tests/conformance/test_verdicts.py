@@ -49,7 +49,7 @@ ABSENT = (
 
 
 def film(choices):
-    """Expected diagnoses by check of a thin film, for one choice of curve and compensation."""
+    """Expected diagnoses of a thin film, by check. Names of models must contain `choices`."""
     compensated = f"{choices}, with MaterialX's compensation"
     surroundings = "environment", "film_visible", "film_glossy"
     return {

@@ -433,7 +433,7 @@ ROWS = [(title, *row) for title, rows in WRONG.items() for row in rows] + list(P
 
 
 def parameters(row):
-    """Turn a row of ROWS into a test parameter, marked `whole` if its shaders compile slowly."""
+    """Turn a row of ROWS into a test parameter, marked `whole` if shaders compile slowly."""
     title, check = row[0], row[4]
     is_long = check in DRAWN or any(each in title for each in ("thin film", "every lobe"))
     marks = pytest.mark.whole if is_long else ()

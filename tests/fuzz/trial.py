@@ -33,7 +33,7 @@ def judged(tried):
 
 
 def trial(tried):
-    """Run a case; return its exit status, and its forbidden effects in one line, or "" if none."""
+    """Run a case; return the exit status, and one line with all forbidden effects or ""."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)
@@ -78,7 +78,7 @@ def _prepared(root, tried):
 
 
 def _called(arguments, encoding):
-    """Run a command; return its exit status or a traceback, its output and its error output."""
+    """Run a command; return the exit status or a traceback, the output and the error output."""
     from mxeon.cli import main
 
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding, newline="") for _ in range(2))

@@ -110,7 +110,7 @@ SOMEBODY, TWO_THREADS = ({"workers": {"tcp://a": {"nthreads": each}}} for each i
 
 
 class Client:
-    """Stand-in for a Dask client, which returns a sequence of prepared lists of workers."""
+    """Stand-in for a Dask client that returns prepared lists of workers, one after another."""
 
     def __init__(self, *answers):
         self._answers = list(answers)

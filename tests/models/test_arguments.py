@@ -144,7 +144,7 @@ RULES = (
     (FILM, (NODE, UP, UP, SOAP), "thinfilm_thickness must lie in [0, 1e9]; got -1.0"),
     (multiply, (LOBE, -0.5), "weight must lie in [0, inf); got -0.5"),
     (COATED, (*CLAY, 0.001, 1.5), "alpha must lie in [0.01, 1]; got 0.001"),
-    # Directions: unit length, and the side of the surface.
+    # Directions of a wrong length, or on the wrong side of the surface.
     (LAMBERT, (UP, [UP, [0, 0, 2]], 1), "wi must be unit vectors to 1e-06; got squared length 4.0 at index (1,)"),
     (LAMBERT, ([np.nan, 0, 1], UP, 1), "wo must be unit vectors to 1e-06; got squared length nan"),
     (LAMBERT, (UP, [1e200, 0, 0], 1), "wi must be unit vectors to 1e-06; got squared length inf"),

@@ -15,7 +15,7 @@ MOMENT = 1e-10  # error of the quadrature in `moments`
 
 
 def moments(g):
-    """Integrals over the sphere of the phase function, and of the phase function times the cosine.
+    """Integrals of the phase function, and of the phase function times the cosine, over the sphere.
 
     Nodes are uniform in log(1 - cos) for g >= 0 and in log(1 + cos) for g < 0, so they are dense at
     the peak.

@@ -78,7 +78,7 @@ def assert_same_density(pdf, again):
 
 
 def turned(w, angle):
-    """Direction `w`, rotated about the normal by `angle`."""
+    """Direction `w` after a rotation by `angle` about the normal."""
     x, y, z = np.moveaxis(w, -1, 0)
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)

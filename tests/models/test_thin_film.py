@@ -26,7 +26,7 @@ from tests.support.availability import package
 MU = np.linspace(0.05, 1.0, 40)
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 WHITE, HALF = np.ones(3), np.full(3, 0.5)
-AVERAGED = 2e-5  # largest error of the average reflectance of random films by a 14-node polynomial
+AVERAGED = 2e-5  # error of 14-node polynomials for the average reflectance of random films
 HEIGHTS = 1.3e-3  # amount by which the sum of the sensitivities' heights exceeds 1
 ORDERS = 1e-8  # error of the summed interference orders, for cosines above 0.05
 TRANSFER = 1e-12  # relative difference from the Python package tmm

@@ -190,7 +190,7 @@ GATE = {
     ),
     "another name of the same error": (errors() | {"diagnosis": QON}, errors() | {"diagnosis": FON}, "", ""),
     "other edges that are not finite": (INVALID | {"error": 376.0}, INVALID | {"error": 380.0}, "", ""),
-    # Checks that did not run, either before or after.
+    # Checks that did not run in one of the two compared runs.
     "lost": ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
     "found": ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
     "implied": ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),

@@ -61,7 +61,7 @@ def loaded(folders):
 
 
 def listed(folders):
-    """Pairs of nodedef and target that the folders implement, read from their XML."""
+    """Pairs of nodedef and target that the folders implement, read from the folders' XML."""
     files = [path for each in folders for path in each.rglob("*.[mx]*l*")]
     elements = [each for file in files for each in ElementTree.parse(file).getroot()]
     return {

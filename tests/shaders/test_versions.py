@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""mxeon accepts every version of MaterialX that has the required functions, without a list."""
+"""mxeon has no list of MaterialX versions, and accepts all versions with the required functions."""
 
 import MaterialX as mx
 import pytest

@@ -22,8 +22,8 @@ KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
 def furnished(tmp_path_factory):
     """Enter a folder with the files that the documents name.
 
-    Each document is read once for all targets. Input values are not collected, because they are not
-    source text.
+    Each document is read once for all targets. Input values are not collected, because input values
+    are not source text.
     """
     folder = tmp_path_factory.mktemp("reach")
     reach.furnish(folder)
