@@ -37,7 +37,7 @@ LEAST_IOR = 1e-50
 # Double-exponential quadrature substitutes c = X / (1 + X), where X = exp(pi sinh(t)). The nodes
 # have |t| < 3.2, because weights at larger |t| are below 1e-15.
 STEP, STEPS = 0.0625, 51
-GROUP = 2**6  # materials per block
+GROUP = 2**12  # values of the integrand per block
 
 # Number of Gauss-Legendre nodes for a curve without singularities in an ellipse of the complex
 # plane. The foci of the ellipse are 0 and 1, and the sum of its half axes is ELLIPSE / 2. The error
@@ -139,9 +139,12 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     ior, extinction = np.broadcast_arrays(ior, extinction)
     smooth = _is_smooth((ior + 1j * extinction) ** 2)
     total = np.empty(smooth.shape)
-    for rows, average in ((smooth, _smooth_avg), (np.logical_not(smooth), _split_avg)):
+    for rows, average, size in (
+        (smooth, _smooth_avg, GROUP),
+        (np.logical_not(smooth), _split_avg, GROUP // 128),
+    ):
         n, k = ior[rows], extinction[rows]
-        groups = (slice(start, start + GROUP) for start in range(0, len(n), GROUP))
+        groups = (slice(start, start + size) for start in range(0, len(n), size))
         total[rows] = np.concatenate([np.empty(0), *(average(n[g], k[g]) for g in groups)])
     return np.minimum(total, 1.0)
 
@@ -156,9 +159,22 @@ def _is_smooth(n2: Array) -> Array:
 
 
 def _smooth_avg(ior: Array, extinction: Array) -> Array:
-    """F_ss by Gauss-Legendre, for materials (N,) whose F is smooth in the cosine."""
-    c, weight = (each[:, np.newaxis] for each in unit_rule(AVERAGE_NODES))
-    return np.asarray(np.sum(2.0 * c * weight * conductor(c, ior, extinction), axis=0))
+    """F_ss by Gauss-Legendre, for materials (N,) whose F is smooth in the cosine c.
+
+    `conductor` avoids cancellation, which is small for these materials. This form of the same F
+    takes a quarter of the time. With a and w of `conductor`, x = c^2, m = |w|^2, u = 2 c a and
+    B = x m + (1 - x)^2: F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
+    """
+    real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
+    total = np.zeros(len(ior))
+    for c, weight in zip(*unit_rule(AVERAGE_NODES), strict=True):
+        x = c * c
+        part = real + x
+        m = np.sqrt(part * part + squared)
+        u = np.sqrt(2.0) * c * np.sqrt(m + part)
+        A, B = m + x, m * x + (1.0 - x) ** 2
+        total += (2.0 * c * weight) * ((A - u) * B / ((A + u) * (B + u * (1.0 - x))))
+    return total
 
 
 def _split_avg(ior: Array, extinction: Array) -> Array:
