@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node add for two BSDFs. The throughput is 1 minus the sum of their albedos and may be negative.
+// Node add for two BSDFs. The throughput, 1 minus both albedos, may be negative.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

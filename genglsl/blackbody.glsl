@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node blackbody: color of a black body in linear Rec. 709, with luminance 1.
+// Node blackbody: color in linear Rec. 709 with luminance 1.
 
-// Fits of the XYZ values X and Z of a black body with Y = 1 at temperature T: quotients N / D of
-// polynomials in t = 1000 K / T. Source: tools/fits/blackbody.py. Domain: [800, 25000] K. Largest
+// Fits of X and Z of a black body with Y = 1 at temperature T: quotients N / D of polynomials in
+// t = 1000 K / T. Source: tools/fits/blackbody.py. Domain: [800, 25000] K. Largest
 // absolute errors: 2.6e-5 of X, 6.7e-5 of Z.
 #define BLACKBODY_X_N0 1.0227899
 #define BLACKBODY_X_N1 2.9880568

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Node chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model. The lobe p is A_p M_p N_p.
 //
-// Roughness is at least 1e-8 rad^2 along the fiber and 1e-4 rad around it, because float32 has no
-// narrower lobes. In the local frame, x is the fiber and z is the normal.
+// Roughness is at least 1e-8 rad^2 along the fiber and 1e-4 rad around it, to suit float32. In
+// the local frame, x is the fiber and z is the normal.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
@@ -35,8 +35,8 @@ float chiang_hair_norm(float v)
                      * (1.0 + u2 / 6.0 * (1.0 + u2 / 20.0 * (1.0 + u2 / 42.0 * (1.0 + u2 / 72.0))));
 }
 
-// Longitudinal lobe M_p for variance v. Inclinations are (cosine, sine). The form without
-// cancellation is that of `longitudinal` in python/mxeon/models/hair.py.
+// Longitudinal lobe M_p for variance v. Inclinations are (cosine, sine). For the
+// form without cancellation, see `longitudinal` in python/mxeon/models/hair.py.
 float chiang_hair_along(vec2 inclined_i, vec2 inclined_o, float v)
 {
     float c = abs(inclined_i.x);
@@ -85,7 +85,7 @@ float chiang_hair_fresnel(float mu, float ior)
     return min(0.5 * amplitude * amplitude * (1.0 + ratio * ratio), 1.0);
 }
 
-// Product of two complex numbers. Their angles are added.
+// Product of complex numbers.
 vec2 chiang_hair_product(vec2 a, vec2 b)
 {
     return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
@@ -103,9 +103,9 @@ vec2 chiang_hair_tilt(float alpha)
     return chiang_hair_product(vec2(C, S), vec2(C, S));
 }
 
-// Terms that depend on the view, but not on the light. The columns of A are the attenuations A_p of
-// R, TT and TRT, and A_rest is the attenuation of TRRT+. In the cross-section, gamma_o and gamma_t
-// are the angles of the view and of the refracted ray, as (cosine, sine).
+// Terms that depend only on the view. The columns of A are the attenuations of R, TT and TRT;
+// A_rest is the attenuation of TRRT+. In the cross-section, gamma_o and gamma_t are the angles of
+// the view and of the refracted ray, as (cosine, sine).
 struct ChiangHairSection
 {
     mat3 A;
@@ -132,13 +132,13 @@ ChiangHairSection chiang_hair_section(vec3 wo, float ior, vec3 absorption)
     return section;
 }
 
-// Sum of the lobes, which is pi times the response. The columns of `tint` are for R, TT and TRT.
+// Sum of the lobes: pi times the response. The columns of `tint` are for R, TT and TRT.
 vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughness_TT, vec2 roughness_TRT, float ior,
                      float cuticle_angle, vec3 absorption)
 {
     ChiangHairSection section = chiang_hair_section(wo, ior, absorption);
 
-    // The light's inclination, tilted for the lobe R, and azimuth, measured from R's center.
+    // Inclination and azimuth of the light, relative to the lobe R.
     vec2 inclined_o = vec2(length(wo.yz), wo.x);
     vec2 inclined_i = vec2(length(wi.yz), wi.x);
     vec2 alpha = chiang_hair_tilt(M_PI * (cuticle_angle - 0.5));
@@ -149,7 +149,6 @@ vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughne
     // Rotation by pi - 2 gamma_t, from one lobe's center to the next.
     vec2 inside = -chiang_hair_product(section.gamma_t, section.gamma_t) * vec2(1.0, -1.0);
 
-    // Add R, TT and TRT, and rotate the light after each lobe.
     vec3 total = vec3(0.0);
     for (int p = 0; p < 3; ++p)
     {
@@ -161,7 +160,7 @@ vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughne
         tilted = chiang_hair_product(chiang_hair_product(tilted, back), chiang_hair_product(back, back));
     }
 
-    // Add TRRT+, which is uniform in azimuth.
+    // Add TRRT+, uniform in azimuth.
     float v = max(roughness_TRT.x, 1e-8);
     float M = chiang_hair_along(inclined_i, inclined_o, v);
     return total + tint[2] * section.A_rest * M * 0.5 * M_PI_INV;
@@ -191,9 +190,8 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        // R and TRT use irradiance from the viewer's side, TT uses irradiance from the far side,
-        // and TRRT+ uses the mean. The sum is exact for an untilted cuticle in a uniform
-        // environment.
+        // Irradiance is from the viewer's side for R and TRT, from the far side for TT, and the
+        // mean for TRRT+. This is exact for an untilted cuticle in a uniform environment.
         ChiangHairSection section = chiang_hair_section(wo, ior, absorption_coefficient);
         vec3 both = 0.5 * tint[2] * section.A_rest;
         vec3 front = tint[0] * section.A[0] + tint[2] * section.A[2] + both;

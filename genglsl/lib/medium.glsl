@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GLSL type of media is VDF since MaterialX 1.39.5, and BSDF before.
+// Media have the type VDF since MaterialX 1.39.5, and BSDF before.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

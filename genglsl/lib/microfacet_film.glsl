@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reflectance F_airy of a microfacet lobe under a thin film: at the half vector, and averaged over
-// the hemisphere (F_ss) and over visible facets. An average is a sum over three cosines, called
-// nodes. Each node has a width, over which fringes partly cancel.
+// the hemisphere (F_ss) and over visible facets. An average is a sum over three cosines
+// (nodes), each with a width over which fringes partly cancel.
 
 #include "microfacet_lobe.glsl"
 #include "thin_film.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Code of microfacet nodes: geometry, reflectances and reflection of a GGX lobe.
+// Geometry, reflectances and reflection of a GGX lobe.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
@@ -96,7 +96,7 @@ float microfacet_lossless(MicrofacetLobe lobe)
     return mx_ggx_NDF(microfacet_local(lobe, lobe.wh), lobe.roughness) * mu_i / (2.0 * smith);
 }
 
-// Light of an environment. MaterialX masks by the mean alpha. Under a film, facets are perfect
+// Environment light. MaterialX masks by the mean alpha. Under a film, facets are perfect
 // mirrors, and the caller applies F.outside.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {

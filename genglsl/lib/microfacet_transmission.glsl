@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light through a microfacet surface, and the response and throughput of lobes that may transmit.
+// Light through a microfacet surface, and lobes that may transmit.
 
 #include "microfacet_film.glsl"
 
