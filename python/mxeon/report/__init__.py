@@ -42,19 +42,25 @@ def to_json(run: Run) -> str:
     """A run as JSON text.
 
     `mxeon report schema` prints the JSON Schema. Non-finite numbers are the strings "NaN",
-    "Infinity" and "-Infinity". Missing values are null. The keys are:
+    "Infinity" and "-Infinity". Missing values are null. Keys:
 
     - $schema: Identifier of the JSON Schema.
     - format: Version of this layout, which increases when a key changes or is removed.
     - verdict: "passed", "failed" or "not run". The verdict of a check may also be "differs", for a
-      difference that the specification permits. `counts` has the number of checks by verdict.
-    - passed: Whether everything requested ran and nothing failed. `exit_status` is an integer.
-    - sentence: The verdict as a sentence. `seconds` is the duration of the run, or null.
+      difference that the specification permits.
+    - counts: Number of checks by verdict.
+    - passed: Whether everything requested ran and nothing failed.
+    - exit_status: Exit status of the command.
+    - sentence: The verdict as a sentence.
+    - seconds: Duration of the run, or null.
     - missing: Items that an interrupted run has not finished.
-    - refused: Refused documents. `errors` has the faults of these documents.
+    - refused: Refused documents.
+    - errors: Faults of the refused documents.
     - compared: Libraries judged only for comparison, which verdict, counts and sentence ignore.
-    - version: Version of mxeon. `software` has versions by name, `documents` paths, and `notes`
-      texts.
+    - version: Version of mxeon.
+    - software: Versions of other software by name.
+    - documents: Paths of the documents.
+    - notes: Texts.
     - libraries: For each folder, the folder's own files ("folder") and added files ("MaterialX").
     - unjudged: Pairs of an item that no check judges, and the reason.
     - hosts: Objects with name, version, device.
