@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from mxeon.models import media
+from mxeon.models.nodes import emissions
 from mxeon.models.nodes.emissions import COMBINED_EMISSIONS, EMISSIONS
 from mxeon.models.nodes.media import AMOUNT, COMBINED_MEDIA, FACTOR, FIRST, MEDIA, METER, SECOND
 from tests.support.cases import direction
@@ -124,12 +125,28 @@ def test_a_schlick_curve_ends_at_both_factors_on_both_sides():
         assert np.abs(values[:, 0] - [0.6, 1.4]).max() <= ROUNDING
 
 
-@pytest.mark.parametrize("row", (*EMISSIONS, *COMBINED_EMISSIONS))
-def test_the_variants_of_a_row_are_others(row):
+@pytest.mark.parametrize("row", EMISSIONS)
+def test_the_variants_of_an_emission_are_others(row):
     wo, inputs = direction([0.75]), inputs_of(row, 1)
     for each in row.variants:
         error = np.abs(each.value(wo, inputs) - row.value(wo, inputs)).max()
         assert error > 1e-3 or each.permitted
+
+
+@pytest.mark.parametrize("row", COMBINED_EMISSIONS)
+def test_combined_emissions_have_the_radiance_of_their_parts(row):
+    inputs = inputs_of(row, 1)
+    first, amount = inputs[emissions.FIRST], inputs.get(emissions.AMOUNT)
+    second, factor = (inputs.get(path) for path in (emissions.SECOND, emissions.FACTOR))
+    expected = {
+        "emission_mix": lambda: amount * first + (1.0 - amount) * second,
+        "emission_add": lambda: first + second,
+        "emission_multiply_float": lambda: factor * first,
+        "emission_multiply_color3": lambda: factor * first,
+    }
+    for side in (0.75, -0.75):
+        found = row.value(direction([side]), inputs)
+        np.testing.assert_allclose(found, expected[row.name](), rtol=ROUNDING)
 
 
 def inputs_of(row, count):
