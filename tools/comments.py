@@ -19,7 +19,7 @@ SUFFIXES = (".py", ".glsl", ".osl", ".ts")
 
 
 def texts(path: Path) -> list[str]:
-    """The docstrings and comments of a file. Consecutive comment lines count as one comment."""
+    """Yield the docstrings and comments of a file. Consecutive comment lines are one comment."""
     text, found, last = path.read_text(encoding="utf-8"), [], 0
     if path.suffix == ".py":
         documented = (ast.Module, ast.ClassDef, ast.FunctionDef)

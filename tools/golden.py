@@ -5,10 +5,9 @@
     python tools/golden.py write out/before.jsonl [--host gl ...]  # default: all hosts here
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
-A line has the result of a check. The line is identified by host, library, subject and check, and
-contains the verdict, the tolerance, whether the check detected the negative control, the diagnosis
-and the pages of the ledger. Numbers in a diagnosis are rounded to two digits, because engines
-differ in later digits.
+Each line has the result of a check on a subject, with a library on a host: the verdict, the
+tolerance, whether the check detected the negative control, the diagnosis, and the pages of the
+ledger. Numbers in a diagnosis are rounded to two digits, because engines differ in further digits.
 """
 
 import argparse
@@ -28,9 +27,9 @@ Line = dict[str, object]
 
 
 def lines(host: str, library: str) -> list[Line]:
-    """The results on a host for all nodes and for the bundled examples."""
+    """Results on a host for all nodes and for the bundled examples."""
     command = ["mxeon", "check", "--host", host, "--library", library, "--json"]
-    for nodes in (["--node", "all"], []):  # some renderers reject --node
+    for nodes in (["--node", "all"], []):
         run = subprocess.run([*command, *nodes], capture_output=True, text=True, check=False)
         if run.stdout.startswith("{"):
             return [line(each) for each in json.loads(run.stdout)["results"]]
@@ -58,7 +57,7 @@ def rounded(value: object) -> object:
 
 
 def compare(before: Path, after: Path) -> int:
-    """Print all checks that differ, and return the number of these checks."""
+    """Print all checks that differ, and return how many differ."""
     old, new = (
         {tuple(each[key] for key in PLACE): each for each in map(json.loads, path.open())}
         for path in (before, after)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Adds the ledger of defects to the wheel, because the package reads pages of the ledger."""
+"""Adds the ledger of defects to the wheel, because the package reads the ledger's pages."""
 
 from pathlib import Path
 from typing import Any

@@ -4,11 +4,10 @@
 python -m tools.materialx_suite CHECKOUT BUILD WORK [NAME=VALUE ...]
 
 CHECKOUT is a clone of MaterialX in the version of the installed package. BUILD is a build of the
-clone with MATERIALX_BUILD_TESTS and the GLSL renderer. CHECKOUT and BUILD are not changed, because
-each library gets a folder in WORK with links to files in CHECKOUT and BUILD. A copy of the suite's
-`_options.mtlx` is changed by NAME=VALUE. For OpenGL on a CPU, renderGeometry=dome.obj selects half
-a sphere of 60 faces. Results in WORK are reused, so a second call only writes
-docs/materialx_suite.md and the pictures of that page.
+clone with MATERIALX_BUILD_TESTS and the GLSL renderer. CHECKOUT and BUILD stay unchanged, because
+each library gets a folder in WORK with links. NAME=VALUE changes an option of the suite. For OpenGL
+on a CPU, renderGeometry=dome.obj selects half a sphere of 60 faces. Results in WORK are reused, so
+a second call only writes docs/materialx_suite.md and the pictures of that page.
 """
 
 import math
@@ -99,26 +98,26 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
         return
     for name in ("libraries", "resources"):
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
-    (folder / OPTIONS).unlink()  # `run_tests` writes a file in place of this link
+    (folder / OPTIONS).unlink()  # a link, which `run_tests` replaces by a file
     (folder / "bin").mkdir()
     shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # looks for data next to itself
     # MaterialX reads files before subfolders, so documents of eonlib take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)
-    for name in SOURCE_FOLDERS:  # documents refer to "../../genglsl"
+    for name in SOURCE_FOLDERS:  # needed, because documents refer to "../../genglsl"
         if not (folder.parent / name).exists():
             (folder.parent / name).symlink_to(source_folder(EONLIB) / name)
 
 
 def option_text(value: str) -> str:
-    """The value of an option as the page shows it, such as "b/c.hdr" for "a/b/c.hdr"."""
+    """The value of an option on the page, such as "b/c.hdr" for "a/b/c.hdr"."""
     names = ["/".join(Path(each.strip()).parts[-2:]) for each in value.split(",")]
     documents = f"{len(names)} documents" if names[0].endswith(".mtlx") else ", ".join(names)
     return documents + NOTE * (names[0] == DOME)
 
 
 def write_dome(path: Path) -> None:
-    """Write half a sphere of 60 faces as OBJ. Software renders 60 faces faster than 3600 faces."""
+    """Write half a sphere of 60 faces as OBJ, which renders faster in software than 3600 faces."""
     rings, sectors = 5, 12
     lines = []
     for ring, sector in np.ndindex(rings + 1, sectors + 1):
@@ -139,7 +138,7 @@ def set_options(suite: mx.Document, options: dict[str, str]) -> None:
 
 
 def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
-    """Run C++ tests, unless the folder already has the results of these tests."""
+    """Run C++ tests, unless the folder already has the results."""
     name = slug(case)
     if (folder / f"{name}.xml").exists():
         return
@@ -166,7 +165,7 @@ def codes(picture: Path) -> Codes:
 
 
 def failed_tests(folder: Path) -> dict[str, bool]:
-    """Whether a C++ test case failed, by the name of the test case."""
+    """Whether a C++ test case failed, by name."""
     return {
         case.attrib["name"]: case.find("OverallResult[@success='true']") is None
         for path in folder.glob("*.xml")
@@ -175,7 +174,7 @@ def failed_tests(folder: Path) -> dict[str, bool]:
 
 
 def untested(folder: Path) -> list[str]:
-    """Implementations that no document of the suite uses, as listed in the log of a test."""
+    """Implementations that no document of the suite uses, according to the log of a test."""
     log = folder / slug(f"~{RENDER_TEST}") / "genglsl_glsl_generate_test.txt"
     return re.findall(r"^\t(\w+)$", log.read_text().partition("Untested: ")[2], re.MULTILINE)
 
@@ -242,7 +241,7 @@ def main(checkout: Path, build: Path, work: Path, options: dict[str, str]) -> No
 
 
 if __name__ == "__main__":
-    from mxeon.hosts.materialx.worker import open_display  # exits if X libraries are missing
+    from mxeon.hosts.materialx.worker import open_display
 
     open_display()
     folders, chosen = sys.argv[1:4], sys.argv[4:]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Benchmarks of eonlib and mxeon; docs/performance.md has results, goals and conclusions.
+"""Benchmarks of eonlib and mxeon, with results and goals in docs/performance.md.
 
 | command (`...`: as in the first row) | what it writes | minutes |
 |---|---|---|

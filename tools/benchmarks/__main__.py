@@ -17,7 +17,7 @@ from mxeon.errors import NotRun
 from tools.benchmarks import rounds
 from tools.benchmarks.command import CACHE, ONE
 
-QUICK = {  # arguments of `measure` in each group if --quick is given
+QUICK = {  # arguments of `measure` with --quick, by group
     "shaders": {"rounds": 5},
     "materials": {"processes": 3, "size": 256},
     "registers": {"nodes": ("oren_nayar", "dielectric_bsdf")},

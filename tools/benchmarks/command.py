@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Benchmarks of imports, of `mxeon --help`, and of `mxeon check` with a cold or warm cache.
 
-Each row of JOBS has a separate folder for the driver's shader cache, so that a row does not affect
-the times of other rows.
+Each benchmark of `mxeon check` has a separate folder for the driver's shader cache.
 """
 
 import json
@@ -27,9 +26,8 @@ JOBS = {
     BOTH: (("--library", "eonlib", "--library", "stock"), None, None),
     "gl, --node all": (("--node", "all"), 25.0, 40.0),
 }
-# A program that starts a command, and prints the peak memory in KiB of the command's largest
-# process. The program must be small, because Linux counts the memory of the process that starts a
-# program as memory of that program.
+# Runs a command, and prints the peak memory in KiB of the command's largest process. The launcher
+# must be small, because Linux counts the launcher's memory as memory of the command.
 LAUNCHER = """
 import resource, subprocess, sys
 status = subprocess.call(sys.argv[1:])
@@ -41,8 +39,8 @@ sys.exit(status)
 def timed(options, cache):
     """Run `mxeon check` with `options` and the folder `cache` for the driver's shader cache.
 
-    Returns seconds, peak memory in MiB, and the number of failed checks, which is infinite if no
-    check passes.
+    Returns seconds, peak memory in MiB, and the number of failed checks, or infinity if no check
+    passes.
     """
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", "--workers", "2", *options]
@@ -94,7 +92,7 @@ def measure(rounds=3, jobs=tuple(JOBS)):
             Figure(name, "s", warm[name], goal),
             Figure(f"{name}, largest process", "MiB", [max(memory[1:])], MEMORY),
         ]
-        if name != BOTH:  # failures are expected with stock MaterialX
+        if name != BOTH:  # stock MaterialX fails checks
             checks.append(Check(name, max(failed), 0.0))
     one = np.median(warm[ONE])
     if REPORT in warm:

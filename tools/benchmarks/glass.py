@@ -3,9 +3,9 @@
 
     python -m tools.benchmarks.glass
 
-The expected weight of a walk is 1. A ray through a ball meets the surface at equal angles on entry
-and exit, so samples can be chained without tracing rays. Weights omit the factor of squared IOR by
-which refraction scales radiance.
+The expected weight of a walk is 1. A ray inside a ball meets the surface at equal angles at both
+ends, so samples can be chained without tracing rays. Weights omit the factor IOR^2 by which
+refraction scales radiance.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ ROUGH = 0.4  # alpha, which is roughness squared
 
 
 def glass(node, **inputs):
-    """A document with a surface shader in which only transmission is enabled."""
+    """A document with a surface shader that only transmits."""
     inputs = {"specular_roughness": ROUGH**0.5} | inputs
     ports = "".join(input_text(name, "float", value) for name, value in inputs.items())
     return document_text(node_text(node, "surfaceshader", "shading", ports))
@@ -61,7 +61,7 @@ def walks(text, rng):
 
 
 if __name__ == "__main__":
-    # The printed table has the mean and the deviation of the weights of walks, and the largest
+    # Columns of the printed table: the mean and the deviation of a walk's weight, and the largest
     # weight of a sample.
     print("| node, alpha | mean | deviation | largest draw |\n|---|---|---|---|")
     for name, document in ROWS.items():

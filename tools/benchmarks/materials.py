@@ -15,8 +15,8 @@ from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 SIZE = 512  # width and height of the timed frames in pixels
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # processes per material; llvmpipe is 17 to 40 % slower in a sixth of processes
-MESH = 128  # squares along a side of the mesh, whose cost is negligible
+PROCESSES = 7  # processes per material; in one of six, llvmpipe is 17 to 40 % slower
+MESH = 128  # squares along a side of the mesh
 LIBRARIES = ("eonlib", "stock")
 
 
@@ -59,7 +59,7 @@ OTHERS = {
 DIFFUSE = {"oren_nayar": _lobe(nodes.OREN_NAYAR, roughness=0.6, **{nodes.FLAG: True})}
 NODES = DIFFUSE | BARE | FILMED | OTHERS
 
-# Goals: the largest acceptable ratio of eonlib's time to stock's time.
+# Goals for eonlib's time divided by stock's time.
 RATIOS = ((DIFFUSE, 1.0), (BARE, 1.03), (FILMED, 1.8), (OTHERS, 1.1))
 GOALS = {name: goal for group, goal in RATIOS for name in group}
 
@@ -79,7 +79,7 @@ class Frame:
             if name in program:
                 host._texture(raster.WHITE_TEXELS, False).use(location=unit)
                 program[name].value = unit
-        # The mesh has a vertex at each pixel center of a small picture with a margin.
+        # `vertices` of a mesh at the pixel centers of a small picture with a margin.
         width = MESH + 2 * points.MARGIN
         corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
         indices = (corner[:, None] + [0, 1, width, width, 1, width + 1]).astype("u4")
@@ -104,7 +104,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, and seconds to compile and to draw a frame, by library. Call in a new process."""
+    """Device, seconds to compile, and seconds to draw a frame, by library. Call in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)
@@ -113,8 +113,8 @@ def run(node, size, libraries):
         for name, library in [("oren_nayar", "stock"), *((node, each) for each in libraries)]
     )
     with host._context:  # `Frame` needs the current context
-        # Another material is drawn first, so that no compilation time includes the start of the
-        # driver.
+        # Another material is drawn first, so that compilation times do not include the driver's
+        # start.
         Frame(host, first, FIRST).draw()
         frames, compilation = {}, {}
         for library, generated in zip(libraries, shaders, strict=True):

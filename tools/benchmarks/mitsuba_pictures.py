@@ -4,10 +4,10 @@
     python -m tools.benchmarks.mitsuba_pictures
 
 The command writes two tables. The table in docs/mitsuba.md has render times of a ball with each
-BSDF under a uniform sky. The table in docs/sampling.md compares exact samples with cosine samples
-in EON scenes with 50 bounces and multiple importance sampling. A time is the least processor time
-of several pictures in llvm_ad_rgb, without compilation. Variances over independent pictures are
-averaged over pixels and channels.
+BSDF under a uniform sky. The table in docs/sampling.md compares EON's sampler with cosine-weighted
+sampling in scenes with 50 bounces and multiple importance sampling. A time is the least processor
+time of several pictures in llvm_ad_rgb, without compilation. The noise is the variance between
+independent pictures, averaged over pixels and channels.
 """
 
 import time
@@ -91,7 +91,7 @@ SCENES = {"Cornell box": cornell_box, "three balls under an even sky": balls}
 
 
 def rendered(mi, scenes, pictures, samples):
-    """Pictures and processor times by scene. After a warm-up, scenes are rendered in turn."""
+    """Pictures and processor times by scene. Scenes are rendered in turn, after a warm-up."""
     found = {name: [] for name in scenes}
     for seed in range(pictures + 1):
         for name, scene in scenes.items():
@@ -112,7 +112,7 @@ def time_table(mi):
 
 
 def noise_table(mi):
-    """Lines of the table in docs/sampling.md, with ratios of cosine sampling to exact sampling."""
+    """Lines of the table in docs/sampling.md, with cosine sampling relative to EON's sampler."""
     head = ("roughness", "variance", "time", "variance times time")
     yield f"| cosine / exact, Mitsuba {version('mitsuba')} | {' | '.join(head)} |\n{'|---' * 5}|\n"
     integrator = {"type": "path", "max_depth": 50, "rr_depth": 50}
@@ -138,7 +138,7 @@ if __name__ == "__main__":
     mi.set_variant("llvm_ad_rgb")
     register()
     register_plugin(mi, COSINE, EonByCosinePlugin)
-    # Noise is measured first, because `time_table` limits Mitsuba to one thread permanently.
+    # Noise is measured first, because `time_table` permanently limits Mitsuba to one thread.
     for page, mark, rows in (
         ("sampling.md", "mitsuba", noise_table),
         ("mitsuba.md", "time", time_table),

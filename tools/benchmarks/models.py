@@ -11,7 +11,7 @@ from mxeon.models import conductor_brdf, dielectric_brdf, eon_brdf, generalized_
 from mxeon.models.sheen import zeltner_brdf
 from tools.benchmarks.rounds import Check, Figure, Group, interleave
 
-VALUES = 1_000_000  # number of pairs of directions
+VALUES = 1_000_000  # pairs of directions
 COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # color and roughness of the material ONE
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 ROUNDINGS = 3e-6  # tolerance of pi f cos in float32
@@ -20,7 +20,7 @@ SECONDS = {ONE: 0.5, OWN: 3.0}  # goals in seconds for a million pairs in microf
 
 
 def models(wo, wi, material):
-    """Functions that evaluate the models for pairs of directions, by model and material."""
+    """Functions that evaluate each model for pairs of directions, by model and material."""
     rng, count = np.random.default_rng(2), len(wo)
     colors, alpha, r = COLORS, np.array([0.3, 0.3]), R
     (n, k), ior = GOLD, 1.5
@@ -39,7 +39,7 @@ def models(wo, wi, material):
 
 
 def traced(wo, wi):
-    """Functions, compiled by JAX, that evaluate the models with one material; none without JAX."""
+    """Functions that evaluate each model with one material, compiled by JAX if JAX is installed."""
     try:
         import jax
     except ImportError:

@@ -3,8 +3,8 @@
 
 No GPU is needed, because Mesa's driver RADV compiles for the chip in `RADV_FORCE_FAMILY` and
 reports statistics. Shaders have one light, because the compiler might unroll the loop over lights
-for only one of the libraries. Cycles are estimated without the loop over the interference orders of
-thin films, because the driver's estimate counts the body of that loop eight times.
+for only one of the libraries. Cycles are estimated without thin films, because the driver's
+estimate counts the body of the loop over interference orders eight times.
 """
 
 import os
@@ -23,15 +23,15 @@ from tools.benchmarks.materials import BARE, DIFFUSE, LIBRARIES, NODES, OTHERS
 from tools.benchmarks.rounds import Figure, Group
 
 COMPILER = ("glslangValidator", "-V", "--quiet", "--stdin", "-S")
-HEADER = 5  # number of words before the first SPIR-V instruction
+HEADER = 5  # words before the first SPIR-V instruction
 CHIP = "navi21"
 PROGRAM = Path(__file__).with_name("pipeline_statistics.c")
 DRIVERS = Path("/usr/share/vulkan/icd.d")
 PACKAGES = "gcc glslang-tools libvulkan-dev mesa-vulkan-drivers"
-# Unit of each statistic, by the driver's name of the statistic.
+# Units of the driver's statistics.
 STATISTICS = {"VGPRs": "registers", "Instructions": "instructions", "Inverse Throughput": "cycles"}
 
-# The loop over lights in a generated shader, and the code that replaces this loop for one light.
+# The loop over lights in a generated shader, and the code for one light that replaces the loop.
 LIGHTS = "for (int activeLightIndex = 0; activeLightIndex < numLights; ++activeLightIndex)"
 LIGHT = "int activeLightIndex = 0;"
 
@@ -43,7 +43,7 @@ ATTRIBUTE = re.compile(r"^layout \(location = \d+\) in", re.MULTILINE)
 
 
 def sources(node):
-    """Shader stages of a material in Vulkan GLSL, by library."""
+    """A material's shader stages in Vulkan GLSL, by library."""
     text = document_text(NODES[node])
     return {
         library: generate(text, "vulkan", library=library, lights=True)[0].stages
@@ -66,10 +66,10 @@ def compiled(source, kind, file):
 
 
 def material_statistics(stages, program, driver):
-    """Statistics of a material's fragment shader for one light, by the driver's names."""
+    """Statistics of a material's fragment shader for one light, by name."""
     assert stages["pixel"].count(LIGHTS) == 1
     text = stages["pixel"].replace(LIGHTS, LIGHT)
-    without_films = text.replace("if (fd.airy)", "if (false)")  # turn films off
+    without_films = text.replace("if (fd.airy)", "if (false)")
     found, bare = (
         statistics({**stages, "pixel": each}, program, driver) for each in (text, without_films)
     )
@@ -77,7 +77,7 @@ def material_statistics(stages, program, driver):
 
 
 def statistics(stages, program, driver):
-    """Statistics of a fragment shader, by the names that the driver reports."""
+    """Statistics that the driver reports for a fragment shader, by name."""
     files = [program.with_name("vert.spv"), program.with_name("frag.spv")]
     for stage, file in zip(("vertex", "pixel"), files, strict=True):
         compiled(stages[stage], file.stem, file)

@@ -2,8 +2,7 @@
 """Shared code of benchmarks: interleaved rounds, figures with goals, and tables of figures.
 
 Compared functions take turns within a round, so that other load on the machine affects all
-functions equally. A ratio is the median of the ratios of all rounds. Benchmark libraries time
-functions one after another, so a drift of the machine's speed would change the ratios.
+functions equally. A ratio is the median of the ratios of all rounds.
 """
 
 import time
@@ -24,7 +23,7 @@ class Figure(NamedTuple):
 
 
 class Check(NamedTuple):
-    """Largest error of the values that a timed function computed."""
+    """Largest error of a timed function's values."""
 
     name: str
     error: float
@@ -44,8 +43,7 @@ class Group(NamedTuple):
 def interleave(functions, rounds, clock=time.perf_counter):
     """Seconds of each function in each round, by name. Functions take turns after a warm-up round.
 
-    With `time.process_time` as the clock, other processes do not count, and the times of all cores
-    are added.
+    `time.process_time` as the clock adds the times of all cores, and excludes other processes.
     """
     seconds = {name: [] for name in functions}
     for _ in range(rounds + 1):

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the time of EON from eonlib and from stock MaterialX in a compute shader.
+"""Measures the time of a call of EON from eonlib and from stock MaterialX in a compute shader.
 
 Times are nanoseconds per call in an invocation. Each invocation calls a function many times with
 unpredictable arguments, and stores the sum. The time of a loop that only adds the arguments is
-subtracted. The first value of each invocation is compared with a float64 value. On software
-devices, processor time is measured, which excludes other processes.
+subtracted. The first value of each invocation is compared with a float64 value.
 """
 
 import re
@@ -51,8 +50,8 @@ CALLS = {
     "stock": "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
     "eonlib": "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)",
 }
-# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E. Errors
-# are up to 1.3e-4 in E, so up to 3.61 x 0.29 x 1.3e-4 x 2 in the value.
+# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E. E has
+# errors of up to 1.3e-4, so the value has errors of up to 3.61 x 0.29 x 1.3e-4 x 2.
 TOLERANCES = {"stock": 3e-4, "eonlib": diffuse.VALUE.value}
 
 
@@ -70,7 +69,7 @@ def library_source():
 
 
 def value(arguments):
-    """Values of pi f cos in float64 for the first arguments of each invocation."""
+    """pi f cos in float64 for the first arguments of each invocation."""
     mu_o, mu_i, turn, roughness, *rho = np.float64(arguments.T)
     S_o, S_i, x = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2), 2.0 * turn - 1.0
     wo = np.stack([S_o, 0.0 * S_o, mu_o], -1)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Coefficients for the arc tangent: atan(t) / t in powers of t^2.
+"""Fits atan(t) / t by a polynomial in t^2.
 
     python -m tools.fits.arc_tangent
 
 The shaders' `oren_nayar_angle` uses the coefficients on [0, tan(pi / 8)] in float32.
 
 The polynomial equals atan(t) / t at the roots of a Chebyshev polynomial in t^2. The coefficients
-are computed with 40 digits. The nearest singularity is the branch point t^2 = -1, so each further
-term reduces the error by a factor of 25.
+are computed with 40 digits. The nearest singularity is the branch point at t^2 = -1, so each
+additional term reduces the error by a factor of 25.
 """
 
 from tools.fits.minimax import mp, roots

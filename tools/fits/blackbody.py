@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shaders' fits of the CIE 1931 XYZ of a black body with Y = 1.
+"""The shaders' fits of X and Z of a black body in CIE 1931 XYZ with Y = 1.
 
 X and Z are quotients N / D of polynomials in t = 1000 K / T, for T from 800 K to 25000 K.
 
@@ -13,10 +13,10 @@ from mxeon.models.media import SECOND
 from tools.fits.minimax import Form, defines, mp, refined, roots
 
 COLDEST, HOTTEST = 800, 25000  # K
-COUNT = 120  # points of the fit
+COUNT = 120
 DEGREE = 4
 FORM = Form(tuple((k,) for k in range(DEGREE + 1)), tuple((k,) for k in range(1, DEGREE + 1)))
-# Coefficients from which the minimax fit starts: least-squares fits, rounded to six digits.
+# Least-squares coefficients, rounded to six digits, from which the minimax fit starts.
 STARTS = {
     "X": (1.0228, 2.98338, 15.7174, 26.6339, 22.5429, 3.34545, 21.0468, 2.47854, 8.48835),
     "Z": (2.24174, -4.94097, 5.96466, -4.06478, 1.14041, 0.466323, 17.7771, -22.9823, 46.1071),
@@ -24,7 +24,7 @@ STARTS = {
 
 
 def sampled(count):
-    """Values of t, dense at both ends, and X and Z of the black body for Y = 1."""
+    """Values of t, closely spaced at both ends, and X and Z of the black body for Y = 1."""
     low, high = mp.mpf(1000) / HOTTEST, mp.mpf(1000) / COLDEST
     second = mp.mpf(SECOND) * 10**6  # nm times 1000 K
     points, quotients = [low + (high - low) * x for x in roots(count)], []
@@ -40,7 +40,7 @@ def sampled(count):
 
 
 def fit():
-    """Coefficients of X and Z by name, rounded as printed, beginning with the numerator."""
+    """Rounded coefficients of X and Z by name, beginning with the numerator."""
     t, X, Z = sampled(COUNT)
     return {
         name: refined(FORM, (t,), values, np.ones(COUNT), STARTS[name])

@@ -4,11 +4,12 @@
     E(mu, r) = exp(-mu^2 / (r (8 - 4 mu^2))) s^2 / (mu + s)^3 N / D,
     s = sqrt(r),  z = sqrt(mu / (mu + s)),
 
-where N and D are polynomials in z and s. At small roughness r, only light near the horizon remains.
-In this limit, the exponential is sin(theta_h)^(1 / r) for the lowest half vector of light above the
-horizon, and the quotient s^2 / (mu + s)^3 behaves like E at mu = 0 and 1. The fit minimizes the
-largest absolute error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses sums, products,
-quotients and square roots. Since roughness is 4 / k with integer k, powers are products of roots.
+where N and D are polynomials in z and s. At small roughness r, only light near the horizon
+contributes. In this limit, the exponential is sin(theta_h)^(1 / r) for the lowest possible half
+vector, and the quotient s^2 / (mu + s)^3 is proportional to E at mu = 0 and at mu = 1. The fit
+minimizes the largest absolute error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses
+sums, products, quotients and square roots. Since roughness is 4 / k with integer k, powers are
+products of roots.
 
     python -m tools.fits.conty_kulla_albedo
 """
@@ -31,7 +32,7 @@ EIGHTHS = (
     *(4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40, 44, 48, 56, 64, 80, 100, 128),
     *(170, 230, 320, 450, 640, 900, 1300, 2000, 3000, 5000, 8000, 13000, 20000, 40000),
 )
-TOP, LEAST = 1.02, 1e-4  # range of fitted albedos, which shaders clamp to 1
+TOP, LEAST = 1.02, 1e-4  # range of albedos in the fit; shaders clamp to 1
 NODES = 20  # quadrature nodes per quarter turn of the azimuth
 
 
@@ -49,7 +50,7 @@ def albedo(mu, eighths):
     for near, far in ((1.0, x * x), (x * x, 1.0)):
         half = near / (near + far)
         flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half
-        # Compute sin(theta_h)^(2 p) by square roots and products.
+        # Square roots and products compute sin(theta_h)^(2 p).
         base, lobe, power = np.sqrt(np.sqrt(np.sqrt(flat / (flat + M * M)))), 1.0, eighths
         while power:
             if power & 1:
@@ -61,7 +62,7 @@ def albedo(mu, eighths):
 
 
 def variables(mu, roughness):
-    """The tuple (z, s), the factor s^2 / (mu + s)^3, and the exponent of the exponential."""
+    """The variables (z, s) of the fit, s^2 / (mu + s)^3, and the exponent of the exponential."""
     s = np.sqrt(roughness)
     factor = roughness / ((mu + s) * (mu + s) * (mu + s))
     exponent = -mu * mu / (roughness * (8.0 - 4.0 * mu * mu))
@@ -88,7 +89,7 @@ def points(count=37):
 
 
 def fit():
-    """Coefficients, rounded as printed. The coefficients of the numerator come first."""
+    """Rounded coefficients, beginning with the numerator."""
     mu, roughness, E = points()
     arguments, factor, exponent = variables(mu, roughness)
     factor = factor * np.array([float(mp.exp(mp.mpf(float(x)))) for x in exponent])

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Prints coefficients for `mxeon.models.sampling` and the shaders, and errors of these fits.
+"""Prints fitted coefficients for `mxeon.models.sampling` and the shaders, and the fits' errors.
 
     python -m tools.fits.eon_sampling
 
 Two inverse distributions map a random number to a cosine and have no other parameters. The inverse
-distributions have the form x = p + sum(a_k B_k(p)), where p is a root of the random number, chosen
-so that x(p) is analytic. Values at p = 0 and 1 are exact for any coefficients. Newton steps, each a
-linear minimax fit, minimize the largest relative error of the density. The fits need the exact
-density, but not the exact inverse distribution.
+distributions have the form x = p + sum(a_k B_k(p)), where p is the root of the random number for
+which x(p) is analytic. Values at p = 0 and 1 are exact for any coefficients. Newton steps, each a
+linear minimax fit, minimize the largest relative error of the density.
 
-ROOT, which only shaders use, holds the coefficients of a polynomial for y = (K / K(pi / 2))^(2/5)
-at a given cosine, where y is analytic in m = 1 - cos. Without the polynomial, shaders would need an
-arc tangent and a power, and digits would cancel.
+ROOT, which only shaders use, holds the coefficients of a polynomial for y = (K / K(pi / 2))^(2/5),
+which is analytic in m = 1 - cos. Without the polynomial, shaders would need an arc tangent and a
+power, and digits would cancel.
 """
 
 from tools.fits.fon_loss import closed_form
@@ -22,7 +21,6 @@ STEPS = 4  # Newton steps; a fifth step changes no printed digit
 
 LOSS_AVG = 6 / (5 * mp.pi) - mp.one / 6  # c1 - c2 of [Portsmouth2025], the average of H
 UPPER_TOTAL = mp.pi / 4 - mp.one / 3  # integral over [0, 1] of the numerator of `upper_density`
-# Exponents of the basis functions.
 MULTIPLE_POWERS = (2, 4, 5, 6, 7, 11)
 UPPER_POWERS = (0, 1, 2, 3, 4, 5)
 
@@ -33,7 +31,7 @@ def multiple_density(mu):
 
 
 def upper_density(m):
-    """Density S m / (pi/4 - 1/3) of m = 1 - mu in the part `upper`, if wo is at the horizon."""
+    """Density S m / (pi/4 - 1/3) of m = 1 - mu in the part `upper`, for wo at the horizon."""
     return mp.sqrt(m * (2 - m)) * m / UPPER_TOTAL
 
 
@@ -75,7 +73,7 @@ def fitted(points, basis, density, root):
 
 
 def root_rows(points):
-    """Rows of the linear fit of y / m by powers of m, where each row is divided by y / m.
+    """Rows of the linear fit of y / m by powers of m. Each row is divided by y / m.
 
     Here, y is (K / K(pi / 2))^(2/5) at the cosine 1 - m. Cancellation costs at most 14 of 40
     digits.
@@ -93,8 +91,7 @@ def dense_near_1(count):
     return [1 - w**2 for w in roots(count)]
 
 
-# Each row has the name, points, basis, density and exponent `root` of a fit. The random number is p
-# to the power `root`.
+# A fit's name, points, basis, density, and `root`. The random number is p to the power `root`.
 ROWS = (
     ("MULTIPLE", dense_near_1, multiple_basis, multiple_density, mp.mpf(3)),
     ("UPPER", roots, upper_basis, upper_density, mp.mpf(5) / 2),
@@ -102,7 +99,7 @@ ROWS = (
 
 
 def printed(name, coefficients):
-    """Print coefficients with ten decimals, as in the package, and return the rounded numbers."""
+    """Print coefficients with ten decimals, and return the rounded numbers."""
     rounded = [round(float(each), 10) for each in coefficients]
     print(f"{name} = ({', '.join(f'{c:.10f}' for c in rounded)})")
     return rounded

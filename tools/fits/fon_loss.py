@@ -3,9 +3,9 @@
 
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
-S contains the branch point of H at mu = 1, so errors fall geometrically with the degrees of P and
-Q. The term with Q vanishes at mu = 0 and 1, so nothing cancels at these ends. P and Q are fitted
-together to the closed form, and minimize the largest relative error of H.
+H has a branch point at mu = 1, as S has, so errors decrease geometrically with the degrees of P and
+Q. The term with Q vanishes at mu = 0 and at mu = 1, so no digits cancel there. P and Q together
+minimize the largest relative error of H.
 
     python -m tools.fits.fon_loss
 """
@@ -16,12 +16,12 @@ from numpy.polynomial.polynomial import polyval
 from mxeon.models import diffuse as formulas
 from tools.fits.minimax import extrema, least_largest, mp
 
-# With one degree less in P or Q, errors grow more than tenfold, as the printed table shows.
+# If P or Q had one degree less, errors would be more than ten times larger.
 DEGREE_P, DEGREE_Q = 4, 3
 DIGITS = 9  # enough to distinguish any two float32 numbers
-COUNT = 200  # points of the fit
+COUNT = 200
 
-# Float32 cosines at which errors are measured, dense in all decades from 1e-8 and in [0, 1].
+# Float32 cosines at which errors are measured, with many cosines in each decade from 1e-8.
 CHECKED = np.unique(
     np.concatenate([np.logspace(-8, 0, 100_000), np.linspace(1e-5, 1, 100_000)]).astype("f4")
 )
@@ -35,7 +35,7 @@ def closed_form(mu):
 
 
 def fitted(mu, p, q):
-    """The fit of H(mu), computed in the precision of `mu` by the operations of shaders."""
+    """The fit of H(mu), computed with the operations of shaders in the precision of `mu`."""
     one = mu.dtype.type(1.0)
     m = one - mu
     S = np.sqrt(m * (one + mu))
@@ -43,7 +43,7 @@ def fitted(mu, p, q):
 
 
 def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
-    """Coefficients that minimize the largest relative error at COUNT points, dense at both ends."""
+    """Coefficients that minimize the largest relative error at COUNT points."""
     rows = []
     for mu in extrema(COUNT + 1)[1:]:
         p = mu / closed_form(mu)
@@ -65,7 +65,6 @@ def largest_errors(p, q):
 
 
 def defines():
-    """Lines of shader code that define the coefficients."""
     rows = zip("PQ", fit(), strict=True)
     return [
         f"#define EON_{name}{k} {x:.{DIGITS}g}" for name, row in rows for k, x in enumerate(row)

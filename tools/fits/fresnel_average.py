@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The shaders' fits of F_ss, the cosine-weighted average of a Fresnel reflectance.
 
-For a dielectric of index n above 1, the fit uses t = 1 / n:
+For a dielectric with an IOR n above 1, the fit uses t = 1 / n:
 
     1 - F_ss = t N / D,
 
-where N and D are polynomials in t. For an index below 1, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). A
-metal reflects everything at grazing, so the fit is a sum over three cosines c_k:
+where N and D are polynomials in t. For an IOR below 1, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). A metal
+reflects everything at grazing, so the fit is a sum over three cosines c_k:
 
     1 - F_ss = sum of w_k (1 - F(c_k)),
 
@@ -24,9 +24,9 @@ from mxeon.shaders.functions import source_file
 from tools.fits.ggx_albedo import legendre
 from tools.fits.minimax import DIGITS, Form, least_largest, mp, printed, roots
 
-COUNT = 400  # points of the fit for dielectrics
+COUNT = 400
 FORM = Form(above=tuple((k,) for k in range(5)), below=tuple((k,) for k in range(1, 4)))
-STEPS = 12  # steps of the reweighted fit; more steps change no printed digit
+STEPS = 12  # number of linear fits; more fits change no printed digit
 
 COSINES = (0.22, 0.58, 0.9)
 INDICES = (*(float(mp.mpf(5) ** (mp.mpf(k) / 6 - 1) / 4) for k in range(12)), 5.0)
@@ -48,10 +48,10 @@ def dielectric_average(n):
 
 
 def dielectric_fit():
-    """Coefficients of N and D, without D's constant 1, by linear fits of (N - D T) / D.
+    """Coefficients of N and D by repeated linear fits that minimize (N - D T) / D'.
 
-    T is the exact N / D. Each fit divides by D of the previous fit, so that the fits converge to
-    the minimax fit.
+    T is the exact value of N / D, and D' is the denominator of the previous fit. The fits converge
+    to the minimax fit.
     """
     t, above = roots(COUNT), len(FORM.above)
     T = [(1 - dielectric_average(1 / x)) / x for x in t]
@@ -112,6 +112,6 @@ if __name__ == "__main__":
     print(f"largest absolute error, dielectrics: {dielectric_error(found):.3g}")
     weights = conductor_fit()
     print("metals", *printed(weights))
-    for least in (0.5, 0.2):  # least extinction of the fit's domain, and a smaller extinction
+    for least in (0.5, 0.2):  # least extinction of the fit, and an extinction outside the fit
         error = conductor_error(weights, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
         print(f"largest absolute error, metals of an extinction from {least}: {error:.3g}")

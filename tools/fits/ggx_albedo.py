@@ -59,7 +59,7 @@ def graded():
 
 
 def incident(mu, alpha):
-    """Terms of the albedo's integrand around the mirror direction, with nodes along the first axis.
+    """Terms of the albedo's integrand for nodes around the mirror direction, along the first axis.
 
     Let t be tan((theta_o - theta_i) / 2). As a function of the azimuth, D G2 / (4 mu_o) is pre (u /
     (u - k))^2, where u - k rises from `low` at the azimuth of the mirror direction to `high` at the
@@ -102,9 +102,9 @@ def fitted(mu, alpha, coefficients):
 
 
 def points(across=61, along=41, root=0.0, least=LEAST):
-    """Cosines and roughnesses, dense where alpha or x is near 0 or 1.
+    """Cosines and roughnesses, with many points where alpha or x is near 0 or 1.
 
-    Here, x is mu / sqrt(alpha^2 + (1 - alpha^2) mu^2). A `root` of 1/2 makes alpha denser near 0.
+    Here, x is mu / sqrt(alpha^2 + (1 - alpha^2) mu^2). A `root` of 1/2 adds points near alpha = 0.
     """
     x, alpha = (np.array(extrema(count), float) for count in (across, along))
     x, alpha = np.meshgrid(np.maximum(x, least), np.maximum(alpha * alpha**root, LEAST))
@@ -113,7 +113,7 @@ def points(across=61, along=41, root=0.0, least=LEAST):
 
 
 def fit():
-    """Coefficients, rounded as printed. The coefficients of the numerator come first."""
+    """Rounded coefficients, beginning with the numerator."""
     mu, alpha = points()
     arguments, z2 = variables(mu, alpha)
     return refined(FORM, arguments, (1.0 - albedo(mu, alpha)) / z2, z2, START)
@@ -139,8 +139,8 @@ def peak(mu, alpha, count=400):
 def value_errors(coefficients, across=145, along=97):
     """Largest error of a compensated value, and the largest factor of F_ss in such a value.
 
-    Error and factor are relative where the value exceeds 1. If v is the value without compensation,
-    the compensated value is v / E_ss, and the factor of F_ss is v (1 - E_ss) / E_ss.
+    If the value exceeds 1, the error and the factor are relative. If v is the value without
+    compensation, the compensated value is v / E_ss, and the factor of F_ss is v (1 - E_ss) / E_ss.
     """
     mu, alpha = points(across, along)
     E, v = albedo(mu, alpha), peak(mu, alpha)

@@ -6,8 +6,9 @@ are
 
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2.
 
-The slopes in both directions have the correlation c, c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2.
-The lost light is the light that isotropic facets lose, with alpha = r at the cosine z r / v, times
+The slopes along and across that azimuth have the correlation c, c^2 = 1 - (alpha_x alpha_y)^2 / (u
+v)^2. Anisotropic facets have the loss 1 - E_ss of isotropic facets with alpha = r at the cosine z r
+/ v, times
 
     1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
 
@@ -27,7 +28,7 @@ from tools.fits.ggx_albedo import fitted
 from tools.fits.minimax import shipped
 
 MISSED = (-0.1268, 0.074, -0.0792, 0.0696)  # the shader's C_0 to C_3
-# The grid of the fit: larger alpha, ratio of the alphas, cosine and azimuth of wo.
+# Grid of the fit: the larger alpha, the ratio of both alphas, the cosine of wo, the azimuth of wo.
 LARGEST = (1.0, 0.6, 0.3, 0.1, 0.05)
 RATIOS = (1.3, 2.0, 3.0, 4.0, 8.0, 16.0, 30.0, 50.0)
 COSINES = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.5, 0.7, 0.9, 0.99)
@@ -35,7 +36,7 @@ AZIMUTHS = np.radians((0.0, 5.0, 12.0, 25.0, 45.0, 65.0, 80.0, 90.0))
 
 
 def points(ratios=RATIOS):
-    """Directions (3, N) and alphas (2, N) of a grid. All alphas are at least 1e-3."""
+    """Directions (3, N) and alphas (2, N) of a grid, with alphas of at least 1e-3."""
     a, ratio, mu, phi = (
         each.ravel() for each in np.meshgrid(LARGEST, ratios, COSINES, AZIMUTHS, indexing="ij")
     )
@@ -46,7 +47,7 @@ def points(ratios=RATIOS):
 
 
 def exact(wo, alpha, ior=None, block=64):
-    """E_ss by quadrature or, if `ior` is given, the albedo of a dielectric without compensation."""
+    """The albedo of a dielectric without compensation. Without `ior`, the albedo is E_ss."""
     parts = []
     for start in range(0, wo.shape[1], block):
         c, weight = slope_nodes(wo[:, start : start + block], alpha[:, start : start + block])
@@ -87,7 +88,7 @@ def visible(wo, alpha):
 
 
 def fit(wo, alpha):
-    """The four coefficients, and the largest relative error of E_ss."""
+    """C_0 to C_3, and the largest relative error of E_ss."""
     E, loss, factors = exact(wo, alpha), missed(wo, alpha), terms(wo, alpha)[1]
     slope, offset = -(loss / E * factors).T, (1.0 - loss) / E - 1.0
     one = np.ones((len(offset), 1))
@@ -107,7 +108,7 @@ def largest_error(ratios=RATIOS, coefficients=MISSED):
 
 
 def largest_visible_error(ratios=RATIOS, ior=1.5):
-    """Largest absolute error of a dielectric's albedo due to the Fresnel average alone."""
+    """Largest absolute error that the Fresnel average causes in a dielectric's albedo."""
     wo, alpha = points(ratios)
     mu, isotropic = visible(wo, alpha)
     facets = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu]), np.stack([isotropic, isotropic])

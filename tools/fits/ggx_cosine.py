@@ -7,14 +7,14 @@ depends on mu, on alpha, and slightly on the curve. The fit has the exact limit 
     c = mu + alpha^2 / (mu + alpha) N / D,
 
 where N and D are polynomials in x = mu / (mu + alpha), in a root y of alpha, and in a number s that
-identifies a curve within its kind. The coefficients minimize the largest error of the albedo E_ss
-F(c). Among Schlick's curves (1 - c)^q, exponent 5 has twice the weight of other exponents.
+identifies the Fresnel curve. The coefficients minimize the largest error of the albedo E_ss F(c).
+Among Schlick's curves (1 - c)^q, exponent 5 has twice the weight of other exponents.
 
-Hoffman's dip c (1 - c)^6 is not monotone, so a third fit starts from the value of the dip at the
-cosine c for Schlick's curve of exponent 5. The fit adds alpha^2 / (mu + alpha) N / D, where N and D
-are polynomials in mu and sqrt(alpha).
+Hoffman's dip c (1 - c)^6 is not monotone, so the third fit is the average of the dip itself. If c
+is the cosine for Schlick's curve of exponent 5, the fitted average is c (1 - c)^6 + alpha^2 / (mu +
+alpha) N / D, where N and D are polynomials in mu and sqrt(alpha).
 
-Arithmetic is restricted as in `ggx_albedo.py`.
+The quadrature only uses sums, products, quotients and square roots, as in `ggx_albedo.py`.
 
     python -m tools.fits.ggx_cosine
 """
@@ -29,10 +29,10 @@ from tools.fits import ggx_albedo
 from tools.fits.ggx_albedo import LEAST, incident, legendre
 from tools.fits.minimax import Form, mp, numerator, printed
 
-BLOCK = 20  # number of points integrated at once
+BLOCK = 20
 BISECTIONS = 50
-FLAT = 0.01  # weights use at least this slope
-DEGREE, OUTER = 8, 12  # nodes of the azimuth in each panel, and beyond the panels
+FLAT = 0.01  # lower limit of the slopes that weights use
+DEGREE, OUTER = 8, 12  # quadrature nodes in each panel, and outside the panels
 
 
 def dielectric(c, ior):
@@ -58,9 +58,9 @@ class Curves:
     """A kind of Fresnel curves, and the fit of the cosine c for this kind."""
 
     function: str  # name of the shader function that computes c
-    reflectance: Callable  # function of the cosine and a curve's parameter
-    parameters: tuple  # parameter of each curve
-    shapes: tuple  # number s of each curve, a variable of the fit
+    reflectance: Callable
+    parameters: tuple
+    shapes: tuple  # the number s of each curve
     counts: tuple  # weight of each curve
     roots: int  # y is alpha to the power 2^-roots
     form: Form
@@ -68,7 +68,6 @@ class Curves:
 
     @property
     def functions(self):
-        """The reflectance of each curve as a function of the cosine."""
         return [lambda c, n=n: self.reflectance(c, n) for n in self.parameters]
 
 
@@ -115,12 +114,11 @@ DIP_BELOW = (
 
 
 def points(across=43, along=25):
-    """Cosines and roughnesses as in `ggx_albedo.points`, with alpha denser near 0."""
     return ggx_albedo.points(across, along, 0.5, 2 * LEAST)
 
 
 def averages(mu, alpha, functions):
-    """E_ss, and averages of functions of the cosine over the visible facets."""
+    """E_ss, and the averages of `functions` of the cosine over the visible facets."""
     blocks = [
         integrals(mu[i : i + BLOCK], alpha[i : i + BLOCK], functions)
         for i in range(0, len(mu), BLOCK)
@@ -130,7 +128,7 @@ def averages(mu, alpha, functions):
 
 
 def azimuths(scale):
-    """Nodes and weights along axis 1, in panels of [0, 1] that end at `scale` to the power k / 8.
+    """Nodes and weights along axis 1, in panels of [0, 1] whose ends are powers k / 8 of `scale`.
 
     Beyond the first panel, the reciprocals of nodes follow Gauss's rule, which suits the tail of a
     peak at 0.
@@ -149,12 +147,12 @@ def azimuths(scale):
 
 
 def integrals(mu, alpha, functions):
-    """Integrals of 1 and of functions of the cosine over visible facets. The first is E_ss."""
+    """E_ss, and the integrals of `functions` of the cosine over visible facets."""
     k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
     tangent, width = azimuths(np.sqrt(low / high))
     shape = (len(low), OUTER, low.shape[-1])
     cotangent, rest = (np.broadcast_to(each[None, :, None], shape) for each in legendre(OUTER))
-    # The variable is the squared sine of half the azimuth relative to the mirror direction.
+    # `sine2` is the squared sine of half the azimuth relative to the mirror direction.
     near, far = 1.0 + tangent * tangent, 1.0 + cotangent * cotangent
     sine2 = np.concatenate([tangent * tangent / near, 1.0 / far], axis=1)
     step = np.concatenate([width / near, rest / far], axis=1) * (4.0 / np.pi)
@@ -166,7 +164,6 @@ def integrals(mu, alpha, functions):
 
 
 def inverse(values, reflectance):
-    """Cosines at which a decreasing curve has the given values."""
     low, high = np.zeros_like(values), np.ones_like(values)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -189,7 +186,7 @@ def cosine(curves, mu, alpha, shape, coefficients):
 
 
 def sample(curves, mu, alpha):
-    """Variables, values and weights of the fit of c. Each point has only every third curve.
+    """Variables, values and weights of the fit of c. Each point uses every third curve.
 
     More curves would make the minimax fit singular, because N is a cubic in s at fixed x and y.
     """
@@ -202,8 +199,8 @@ def sample(curves, mu, alpha):
         low, high = np.maximum(c - 1e-5, 0.0), np.minimum(c + 1e-5, 1.0)
         slope = (function(low) - function(high)) / (high - low)
         arguments, factor = variables(curves, mu[selected], alpha[selected], shape)
-        # Where a curve is flat, errors of c have no effect, so the weight would be 0. A minimum
-        # weight keeps c from drifting to steep parts of the curve.
+        # Without a minimum weight, the fit would ignore flat parts of a curve, so that the fitted c
+        # could drift from a flat part to a steep part.
         weight = np.maximum(count * slope, FLAT) * albedo[selected] * factor
         columns.append((*arguments, (c - mu[selected]) / factor, weight))
     *arguments, value, weight = (np.concatenate(each) for each in zip(*columns, strict=True))
@@ -211,7 +208,7 @@ def sample(curves, mu, alpha):
 
 
 def fit(curves):
-    """Coefficients, rounded as printed. The coefficients of the numerator come first."""
+    """Rounded coefficients, beginning with the numerator."""
     return numerator(curves.form, *sample(curves, *points()), curves.below)
 
 
@@ -229,7 +226,7 @@ def errors(curves, coefficients, mu, alpha):
 def dip_sample(mu, alpha, schlick_coefficients):
     """Variables, values and weights of the fit of the dip's average.
 
-    Weights omit E_ss, because the compensation of a white surface divides the albedo by E_ss.
+    The weights omit E_ss, because energy compensation divides the albedo by E_ss.
     """
     _, (mean,) = averages(mu, alpha, [dip])
     c = cosine(SCHLICK, mu, alpha, 0.5, schlick_coefficients)

@@ -7,28 +7,28 @@ angle, so that tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical
 
     S = (1 + v / sqrt(1 + v^2)) / 2,  v = k (tau_m / tau_c - tau_c / tau_m),
 
-and the share of transmitted light is S^p (1 - F). F is the reflectance at the tau that a share Q of
-the facets exceeds, where Q is a part of S. The same distribution determines this tau:
+and the share of transmitted light is S^p (1 - F). F is the reflectance at a value of tau that a
+fraction Q of the facets exceeds. Q is proportional to S, and the distribution of S determines tau:
 
     k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),
     2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
 Along the normal, the exact share 1 / (1 + alpha^2 tau_c^2) of GGX is S with k = 1/2. For a smooth
-surface, S with 2 k = mu s / alpha is the distribution of GGX's slopes in one direction. If mu and s
-are the cosine and sine of the view, the fit is
+surface, S with 2 k = mu s / alpha is the distribution of GGX's slopes in one direction. With the
+cosine mu and the sine s of the view's polar angle, the fit is
 
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
 
-Each of a, b, k_0, p and the part of S is a linear form, or the exponential of a linear form. A
-greedy search chose the terms among products of mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s /
-(s + alpha) and n.
+Each of a, b, k_0, p and Q / S is a sum of fitted terms, or the exponential of a sum. A greedy
+search chose the terms among products of mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s / (s +
+alpha) and n.
 
 The share of light that follows reversed paths from outside (`mxeon.models.transmission`) has the
-same form with other coefficients and a factor 1 / (1 + r alpha (1 - n^2) / mu). The factor accounts
-for light at grazing that facets reflect back up.
+same form with other coefficients, divided by 1 + r alpha (1 - n^2) / mu. The divisor accounts for
+light at grazing that facets reflect back up.
 
 The fit minimizes the largest errors of the compensated albedo and of the share by reversed paths.
-The search runs in float64, starts from the shader's coefficients, and need not be repeatable.
+The search runs in float64, so coefficients may differ slightly between machines.
 
     python -m tools.fits.ggx_inside
 """
@@ -42,10 +42,10 @@ from mxeon.models import dielectric_albedo_dir, fresnel_dielectric, fresnel_diel
 from mxeon.models.transmission import reversed_transmittance
 from mxeon.shaders.functions import source_file
 
-SEED, COUNT = 5, 2500  # random views and roughnesses
+SEED, COUNT = 5, 2500
 LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
-POWERS = (4, 8, 16)  # half the exponents of successive p-norms, which approach the largest error
+POWERS = (4, 8, 16)  # half the exponents of successive p-norms, which approximate the largest error
 SCALE = 30.0  # scales errors to about 1
 
 
@@ -72,7 +72,7 @@ def albedo(mu, alpha, ior):
 
 
 def passing(mu, alpha, ior, c):
-    """Fitted mean of 1 - F over visible facets, and fitted share of light as in `passed`."""
+    """Fitted mean of 1 - F over visible facets, and fitted share of light by reversed paths."""
     s2, bent = 1.0 - mu * mu, 1.0 - ior * ior
     x, y, z = mu / (mu + alpha), np.sqrt(alpha), np.sqrt(s2) / (np.sqrt(s2) + alpha)
     ratio = mu * mu * s2 / alpha**2
@@ -109,7 +109,7 @@ def passing(mu, alpha, ior, c):
 
 
 def passed(mu, alpha, ior):
-    """Exact shares of light that follows reversed paths, for arrays of equal length."""
+    """Exact shares of light that follows reversed paths."""
 
     def outside(a, n):
         return lambda mu: dielectric_albedo_dir(view(mu), 1.0, [a, a], 1.0 / n)
@@ -133,7 +133,7 @@ def errors(coefficients, mu, alpha, ess, albedos):
 
 
 def fit(mu, alpha, ior, sampled, exact):
-    """Fit the coefficients to results of `sample` and to exact results of `passed`."""
+    """Fit the coefficients to `sampled` albedos and `exact` shares by reversed paths."""
 
     def powers(coefficients, power):
         share = passing(mu, alpha, ior, coefficients)[1] - exact
@@ -147,7 +147,7 @@ def fit(mu, alpha, ior, sampled, exact):
 
 
 def shipped():
-    """Coefficients in the order of the shader's text."""
+    """The shader's coefficients."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
     lines = re.search(r"vec2 a = .*?risen =[^;]*", text, re.DOTALL)
     assert lines
@@ -155,7 +155,7 @@ def shipped():
 
 
 if __name__ == "__main__":
-    # Print the coefficients of a search, then errors of the shader's coefficients at other points.
+    # Print coefficients of a new search, then errors of the shader's coefficients at other points.
     mu, alpha = points()
     ior = np.random.default_rng(SEED).uniform(INDICES[0], INDICES[-1], len(mu))
     print(fit(mu, alpha, ior, sample(mu, alpha), passed(mu, alpha, ior)).round(5).tolist())

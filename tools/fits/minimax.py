@@ -2,13 +2,13 @@
 """Linear and rational minimax fits in 40 digits, whose results are the same on every machine.
 
 For N unknowns, the minimax residual over many rows equals the minimax residual over some N + 1
-rows, called a reference. All rows of the reference attain that residual. Stiefel's exchange
-replaces rows of the reference, which raises the residual of the reference, until no other row
-exceeds this residual. The exchange is the simplex method on the dual linear program.
+rows, called the reference. Stiefel's exchange replaces rows of the reference, which raises the
+residual of the reference, until no row has a larger residual than the reference. The exchange is
+the simplex method on the dual linear program.
 
 A rational fit is N / D with D = 1 + ..., where N and D are sums of given monomials. A search in
-float64, which need not be repeatable, finds starting coefficients or a denominator without zeros.
-Linear fits in 40 digits then compute repeatable coefficients.
+float64 finds starting coefficients or a denominator without zeros. Linear fits in 40 digits then
+compute coefficients that are the same on every machine.
 """
 
 import math
@@ -22,9 +22,9 @@ from mxeon.shaders.functions import source_file
 mp = MPContext()
 mp.dps = 40
 
-EXCHANGES = 500  # maximum number of exchanges, ten times the number that fits in this folder need
+EXCHANGES = 500  # maximum number of exchanges; fits in this folder need at most 50
 DIGITS = 8  # decimal digits of a printed coefficient, one more than float32 resolves
-SCATTER = 2654435769  # 2^32 / golden ratio, whose multiples modulo 2^32 are evenly scattered
+SCATTER = 2654435769  # 2^32 / golden ratio; multiples modulo 2^32 are spread evenly
 STEPS = 2  # Newton steps from coefficients with six digits; a third step changes no printed error
 
 
@@ -36,13 +36,13 @@ def least_largest(rows, right):
     """
 
     def signed(i, sign):
-        """Coefficients of the unknowns x and level in sign (row @ x) - level = sign right."""
+        """Coefficients of the unknowns x and `level` in sign (row @ x) - level = sign right."""
         return [sign * each for each in rows[i]] + [-mp.one]
 
     count = len(rows[0])
     indices = [(len(rows) - 1) * k // count for k in range(count + 1)]
     total = mp.matrix([0] * count + [-1])
-    # Choose signs so that some positive weights make the rows of the reference add up to zero.
+    # Choose signs so that a sum of the reference's rows with positive weights is zero.
     signs = [(-1) ** k for k in range(count + 1)]
     weights = mp.lu_solve(mp.matrix(list(map(signed, indices, signs))).T, total)
     signs = [sign * int(mp.sign(weight)) for sign, weight in zip(signs, weights, strict=True)]
@@ -65,7 +65,7 @@ def least_largest(rows, right):
 
 
 def roots(count):
-    """Roots of a Chebyshev polynomial on [0, 1], dense near both ends but without the ends."""
+    """Roots of a Chebyshev polynomial on [0, 1], closely spaced near both ends."""
     return [(1 - mp.cos(mp.pi * (2 * k + 1) / (2 * count))) / 2 for k in range(count)]
 
 
@@ -79,10 +79,10 @@ def extrema(count):
 
 @dataclass(frozen=True)
 class Form:
-    """The monomials of a rational function, each as a tuple of exponents."""
+    """The monomials of a rational function, as tuples of exponents."""
 
     above: tuple  # monomials of the numerator
-    below: tuple  # monomials of the denominator, without its constant 1
+    below: tuple  # monomials of the denominator, except the constant 1
 
     def value(self, variables, coefficients):
         """Values of N / D at arrays of variables. Coefficients begin with the coefficients of N."""
@@ -96,7 +96,7 @@ def _monomial(point, exponents):
 
 
 def _samples(form, variables, values, weights):
-    """Each point in 40 digits, as monomials of N, monomials of D, a value, and a weight."""
+    """Yield monomials of N, monomials of D, a value and a weight in 40 digits for each point."""
     for columns in zip(*variables, values, weights, strict=True):
         *point, value, weight = map(mp.mpf, columns)
         above, below = (
@@ -123,7 +123,7 @@ def refined(form, variables, values, weights, start):
 
 
 def numerator(form, variables, values, weights, below):
-    """The minimax coefficients of N for the coefficients `below` of D, and then `below` itself."""
+    """Minimax coefficients of N for the coefficients `below` of D, followed by `below`."""
     rows, right = [], []
     for above, monomials, value, weight in _samples(form, variables, values, weights):
         factor = weight / (1 + mp.fdot(monomials, below))
@@ -136,12 +136,10 @@ def numerator(form, variables, values, weights, below):
 
 
 def printed(coefficients):
-    """Coefficients as texts with as many digits as in shaders."""
     return [f"{x:.{DIGITS}g}" for x in coefficients]
 
 
 def defines(form, coefficients, prefix):
-    """Lines of GLSL that define the coefficients, in the order of the form."""
     monomials = [("N", m) for m in form.above] + [("D", m) for m in form.below]
     return [
         f"#define {prefix}_{part}{''.join(map(str, m))} {x:.{DIGITS}g}"
@@ -150,11 +148,11 @@ def defines(form, coefficients, prefix):
 
 
 def shipped(stem, function):
-    """Coefficients of a fit in a GLSL function, in the order of the form and with N first."""
+    """Coefficients that a GLSL function uses, beginning with N."""
     text = source_file("glsl", stem).read_text(encoding="utf-8")
     body = text.partition(f"{function}(")[2].partition("\n}")[0]
     parts = re.findall(r"float ([ND])\d? = (.*?);", body, re.DOTALL)
     ordered = " ".join(part for each in "ND" for kind, part in parts if kind == each)
     found = [float(x) for x in re.findall(r"-?\d+\.\d+", ordered)]
-    found.remove(1.0)  # the denominator's constant
+    found.remove(1.0)  # the constant 1 of the denominator
     return tuple(found)

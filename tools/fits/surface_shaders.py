@@ -4,9 +4,9 @@
     python -m tools.fits.surface_shaders
 
 The layer equation needs the albedo of each lobe. The reference computes albedos by quadrature, and
-eonlib uses fits. The script evaluates surfaces in both ways in float64, for pairs of directions and
-materials that are drawn as in the checks, but with other seeds. The script prints the largest
-errors of values, of albedos, and of means over a set. The errors are due to all fits together.
+eonlib uses fits. The script evaluates surfaces by quadratures and by fits, in float64, for random
+directions and materials, drawn with other seeds than in the checks. The script prints the largest
+errors of values, of albedos, and of means over a set, which all fits together cause.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -25,7 +25,7 @@ from mxeon.models.microfacet import fresnel
 from tools.fits import conty_kulla_albedo, fresnel_average, ggx_anisotropic, ggx_cosine
 from tools.fits.minimax import shipped
 
-SETS = 32  # number of random sets of pairs and materials
+SETS = 32
 LEAST = 1e-6  # smallest cosine and roughness to which shaders apply their fits
 EXACT = nodes.ShadingPoints._albedo
 
@@ -37,7 +37,7 @@ WEIGHTS, COSINES = fresnel_average.shipped_conductor()
 
 
 def facets(wo, roughness):
-    """Views (3, N) and alphas (2, N), clamped as in the shaders' fits."""
+    """Views (3, N) and alphas (2, N), clamped to the range of the shaders' fits."""
     alpha = np.broadcast_to(np.maximum(roughness, LEAST), (2, wo.shape[1]))
     return np.stack([*wo[:2], np.maximum(wo[2], LEAST)]), alpha
 
@@ -63,7 +63,7 @@ def conductor_average(ior, extinction):
 
 
 def lobe_albedo(points, exact, node, wo, inputs):
-    """Albedo of a lobe, by the shader's fit if the lobe can be a top layer, otherwise exact."""
+    """Albedo of a lobe: by the shader's fit if the lobe can be a top layer, otherwise exact."""
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
         return EXACT(points, exact, node, wo, inputs)
@@ -89,7 +89,7 @@ def _dielectric(wo, inputs):
 
 
 def _schlick(wo, inputs):
-    assert np.all(inputs["color82"] == 1.0)  # no lobe with the dip of color82 is above a layer
+    assert np.all(inputs["color82"] == 1.0)  # no top layer uses color82
 
     def curve(mu, alpha):
         exponent = inputs["exponent"]
@@ -107,13 +107,13 @@ def _sheen(wo, inputs):
     return inputs["color"] * E[:, np.newaxis]
 
 
-# Functions that compute fitted albedos of top layers, by name of the node.
+# Fitted albedos of top layers, by name of the node.
 LAYERED = {"dielectric": _dielectric, "schlick": _schlick, "conty_kulla": _sheen}
 
 
 @contextmanager
 def fits():
-    """Context in which the reference uses the shader's fits instead of quadratures."""
+    """Make the reference use the shader's fits instead of quadratures."""
     curve = microfacets.CONDUCTOR_CURVE
     exact = curve.average
     with ExitStack() as stack:
@@ -126,7 +126,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Largest errors of values and albedos in a random set, and errors of the means, by name."""
+    """Largest errors of values and albedos in a random set, and errors of means, by name."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)
@@ -153,7 +153,7 @@ def errors(shader, seed):
 
 
 def largest(shader):
-    """Largest errors over random sets by name, without sets that the layer equation excludes."""
+    """Largest errors by name, over random sets except sets that the layer equation excludes."""
     found, seeds = [], count(SEED.get() + 1)
     while len(found) < SETS:
         with suppress(OutsideModel):

@@ -3,15 +3,15 @@
 
     python -m tools.fits.thin_film
 
-The shader sums only the orders of interference that matter. Averages over the hemisphere and over
-visible facets are sums over three cosines. Each cosine stands for a range of cosines, within which
-fringes partly cancel. The script prints the largest errors for cosines from 0.1 and films of up to
-1000 nm on each kind of substrate.
+The shader omits negligible orders of interference. Averages over the hemisphere and over visible
+facets are sums over three cosines. Each cosine represents a range of cosines, within which fringes
+partly cancel. The script prints the largest errors for cosines of at least 0.1 and for films of up
+to 1000 nm on each kind of substrate.
 
-A check measures the root mean square error of a set of films. The tolerance of the check is the
-largest such error of other sets that are drawn in the same way, at most a third of the largest
+A check measures the root mean square error of a set of random films. The tolerance of the check is
+the largest root mean square error of other random sets, which is at most a third of the largest
 error of a single film. So the check detects a wrong digit, which affects all films, even if the
-effect is below the largest error of a single film.
+wrong digit changes each film by less than the largest error of a film.
 """
 
 import numpy as np
@@ -30,11 +30,10 @@ FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "in
 BARE = FILMS | {"thickness": (0.0, 0.0), "index": (1.0, 1.0)}
 VISIBLE = FILMS | {"index": (LEAST_FILM, 2.5)}
 CLEAR = dict(alpha=SHARP.alpha, mu=SHARP.mu, thickness=SHARP.thickness, index=(LEAST_OIL, 2.5))
-DARK = 1e-3  # errors of smaller reflectances are relative to DARK
+DARK = 1e-3  # errors of reflectances below DARK are divided by DARK
 STEP = 1e-6  # relative change of the thickness for difference quotients
-# Values of the shader, fitted by `thin_film_nodes.py`. NODES holds cosines, weights and widths of
-# the nodes for F_ss. FACETS holds coefficients of the polynomials in `facets`, for the nodes of
-# visible facets.
+# The shader's constants, fitted by `thin_film_nodes.py`. NODES has the cosines, the weights and the
+# widths of the nodes for F_ss. FACETS has the coefficients of the polynomials in `facets`.
 NODES = (
     (0.17999, 0.55701, 0.88292),
     (0.10982, 0.43737, 0.4528),
@@ -46,23 +45,23 @@ FACETS = (
     (0.32298, 3.3428, -4.255, 0.51298, 3.6133, -7.43, 3.3391, -2.597, 3.5172, -0.34239),
     (0.14542, 0.030955, -0.22576, -0.22374, 1.0328, -1.4779, 0.16285, -1.7185, 2.1385, 0.018052),
 )  # fmt: skip
-# Orders are summed while the square of the next order exceeds VALUE_ORDER times the squared mean
-# reflectances of all channels, and WIDTH_ORDER times the squared width of a node. Each square is
-# assumed to be at most ORDER_RATIO times the previous square.
+# An order is summed if the square of the order exceeds VALUE_ORDER times the squared mean
+# reflectances of all channels, and exceeds WIDTH_ORDER times the squared width of a node. The
+# square of an order is assumed to be at most ORDER_RATIO times the square of the previous order.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
-NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])  # the narrowest Gaussian
-LEAST_PATH = 1e-21  # least path difference in m
-LEAST_LOSS = 1e-12  # least share of escaping light
-# Parameters of the search for the largest error.
-SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # seed, films per step, steps of differential evolution
-WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of worst films to vary, and sizes of the steps
+NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])
+LEAST_PATH = 1e-21  # m
+LEAST_LOSS = 1e-12
+SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # COUNT films per step, GENERATIONS of evolution
+WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of films to vary, and sizes of the steps
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
-COLORED = 17  # NUMBERS plus seven for color82, color90 and the exponent of Schlick's curve
+COLORED = 17  # NUMBERS, plus 7 for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
 MOVED = 0.3  # share of the COLORED numbers that change in a step
-LEAST = 1e-3  # lower limit of numbers for a film; roughness, cosine and extinction may be 0
-# Longer searches found these worst films of 1000 nm, which random starts miss. One film is on a
-# metal and reflects totally inside. The other film is on glass, seen at grazing.
+LEAST = 1e-3  # lower limit of a film's numbers, except roughness, cosine and extinction
+# Films of 1000 nm with the largest errors that longer searches found, but that random starts miss.
+# The first film is on glass, seen at grazing. The second film is on a metal, with total reflection
+# inside the film.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
 CORNERS = {
     "dielectric_bsdf": GLASS,
@@ -74,7 +73,6 @@ WHITE = {"color82": 1.0, "color90": 1.0}
 
 def shader_curve(category, material, mu, width=0.0):
     """Mean of a film's curve over cosines near mu with standard deviation `width`, as in GLSL."""
-    # Evaluate both interfaces at each cosine.
     films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     mu, thickness, n = np.broadcast_arrays(mu, *films)
     opd = film.path_difference(mu, thickness, n)
@@ -100,7 +98,7 @@ def shader_curve(category, material, mu, width=0.0):
 
 
 def substrate(material):
-    """Inputs of the substrate alone, without its film and tint."""
+    """Inputs of the substrate, without the film and the tint."""
     return {k: v for k, v in material.items() if k != "tint" and not k.startswith("thinfilm")}
 
 
@@ -122,7 +120,7 @@ def counted_orders(z, opd, spread, count):
 
 
 def decay(mu, var, opd, spread):
-    """Exponent of the first order's damping by a Gaussian sensitivity and a spread of paths."""
+    """Exponent by which a Gaussian sensitivity and a spread of paths damp the first order."""
     return var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
 
 
@@ -143,7 +141,7 @@ def order_count(weights, sizes, opd, spread, least):
 
 
 def orders_errors(category, material, alpha, mu):
-    """Errors of the sum of orders, relative to the largest channel or DARK, whichever is larger."""
+    """Errors of the sum of orders, divided by max(DARK, largest channel)."""
     largest = film_curve(category).at(mu, **material).max(axis=0)
     return curve_errors(category, material, alpha, mu) / np.maximum(largest, DARK)
 
@@ -155,7 +153,8 @@ def curve_errors(category, material, _, mu):
 
 
 def slopes(category, material, _, mu):
-    """Derivatives of a curve by log(thickness), which scale errors of path differences."""
+    """Derivatives of a curve with respect to log(thickness), which scale errors of path
+    differences."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -215,12 +214,12 @@ def albedo_errors(category, material, alpha, mu):
 
 
 def seen_errors(category, material, alpha, mu):
-    """`albedo_errors` times the cosine of the view, as in a mean over a picture."""
+    """`albedo_errors` times the cosine of the view, by which a picture of a sphere is averaged."""
     return mu * albedo_errors(category, material, alpha, mu)
 
 
 def visible_average(category, material, alpha, mu):
-    """Average over the visible facets, as the quotient of two integrated albedos."""
+    """Average over visible facets: the albedo with a film divided by the albedo of a mirror."""
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     inputs = {name: value.T for name, value in material.items()}
     inputs["roughness"] = np.repeat(alpha[:, np.newaxis], 2, axis=1)
@@ -232,10 +231,9 @@ def visible_average(category, material, alpha, mu):
 
 
 def visible_mean(category, material, alpha, mu, coefficients=FACETS):
-    """`visible_average` by the shader's three cosines, optionally with other coefficients.
+    """Average over the visible facets by the shader's sum over three cosines.
 
-    The cosines are Gauss nodes for a semicircular density, because few facets are at the ends of
-    the range.
+    The cosines are Gauss nodes for a semicircular density, which is 0 at the ends of the range.
     """
     mean, reach, bend = facets(mu, alpha, coefficients)
     total = 0.0
@@ -254,7 +252,7 @@ MIRRORS = {
 
 
 def facets(mu, alpha, coefficients):
-    """Mean cosine between visible facets and view, and the spread and the skew of the nodes."""
+    """Mean cosine between visible facets and view, and spread and skew of the three cosines."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
     polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
     mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))
@@ -268,14 +266,13 @@ def monomials(mu, alpha):
 
 
 def smooth_errors(category, material, _, mu):
-    """Errors of a smooth lobe's value F (1 + F_ss (1 - E_ss) / E_ss) that are due to F_ss."""
+    """Errors due to F_ss in a smooth lobe's value F (1 + F_ss (1 - E_ss) / E_ss)."""
     E_ss = ggx_albedo_dir(mu, SMOOTH[0])
     F = film_curve(category).at(mu, **material).max(axis=0)
     return average_errors(category, material) * F * (1.0 - E_ss) / E_ss
 
 
-# Largest errors to measure, by name. Each row has the function, the ranges of films, and how many
-# numbers describe a film.
+# Measured quantities, each with a function, ranges of films, and how many numbers describe a film.
 MEASURED = {
     "orders": (orders_errors, FILMS, COLORED),
     "orders of curves": (curve_errors, CLEAR, COLORED),
@@ -289,7 +286,7 @@ MEASURED = {
     "albedo from an index on": (albedo_errors, VISIBLE),
     "albedo in a picture": (seen_errors, VISIBLE),
 }
-# Root mean square errors to measure, by name. Each row has the function and the set of films.
+# Measured root mean squares, each with a function and a set of films.
 SETS = {
     "all orders": (curve_errors, microfacets.ORDERED),
     "F_ss": (average_errors, microfacets.FRINGED),
@@ -326,11 +323,11 @@ def filmed(category, ranges, unit):
 
 
 def largest(errors, ranges, category, numbers=NUMBERS):
-    """Search for the largest error of films within ranges.
+    """Search for the film with the largest error within ranges.
 
-    The search takes decreasing steps from the worst of some random films and a known film. Then
-    differential evolution starts at the worst of all films. If COLORED numbers describe a film,
-    more films take part, and a step changes only some numbers.
+    The search repeatedly varies the films with the largest errors, in smaller and smaller steps.
+    Then differential evolution starts from the films with the largest errors. If COLORED numbers
+    describe a film, the search uses more films, and a step changes only some numbers.
     """
     rng = np.random.default_rng(SEED)
     many = numbers > NUMBERS
@@ -374,7 +371,7 @@ def films(spec, ranges, seed):
 
 
 def largest_mean(errors, ranges, sets=64):
-    """Largest root mean square error over many sets of films, by category."""
+    """Largest root mean square error of many sets of films, by category."""
     return {
         spec.node: max(
             float(np.sqrt(np.mean(errors(*films(spec, ranges, seed)) ** 2)))

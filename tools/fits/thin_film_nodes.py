@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits the nodes with which `genglsl/lib/microfacet_film.glsl` averages a film.
 
-The script uses random films of up to 1000 nm on each kind of substrate, not the films of the
+The script uses random films of up to 1000 nm on each kind of substrate, and other films than the
 checks. Nodes for F_ss minimize the mean fourth power of the errors, which emphasizes the largest
 errors. Nodes for visible facets minimize the mean square error.
 
@@ -15,13 +15,13 @@ from mxeon.models.microfacet.ggx import smith_lambda
 from mxeon.models.thin_film import film_curve
 from tools.fits import thin_film as fit
 
-SEED, COUNT = 24, 400  # seed and number of random films
+SEED, COUNT = 24, 400
 BARE, HEAVY = 100, 8.0  # number and weight of samples without a film
 START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights, widths
 FACETS = 384  # number of films for the fit of the visible facets
-GRID = 16  # number of views, and number of roughnesses, in `grid`
-TIE = 2e-2  # weight of an error of the moments; an error of a film has weight 1
-BEND = 0.33  # b / skewness for nodes a t + b (t^2 - 1), where t has a semicircular density
+GRID = 16  # `grid` has GRID views and GRID roughnesses
+TIE = 2e-2  # weight of an error of the moments, if an error of a film has weight 1
+BEND = 0.33  # b divided by the skewness of a t + b (t^2 - 1), where t has a semicircular density
 NEAR = 1e-5  # change of a coefficient for difference quotients
 SCALE = 1e3  # scales squared errors to about 1
 
@@ -59,7 +59,7 @@ def hemisphere():
 
 
 def facets():
-    """Coefficients for visible facets, by one Gauss-Newton step that starts at `moments_fit`."""
+    """Coefficients for visible facets, by one Gauss-Newton step from the fit of the moments."""
     films = [(film, fit.visible_average(*film)) for film in random_films(FACETS)]
     start = moments_fit()
 
@@ -77,13 +77,12 @@ def facets():
 
 
 def grid():
-    """Cosines of views and roughnesses on a grid of the whole domain."""
     axis = (np.arange(GRID) + 0.5) / GRID
     return (each.ravel() for each in np.meshgrid(axis, axis))
 
 
 def moment_rows(mu, alpha):
-    """Matrix that maps coefficients to mean, spread and skew of nodes, by view and roughness."""
+    """Matrix that maps coefficients to mean, spread and skew for each view and roughness."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
     terms = fit.monomials(mu, alpha)
     blocks = np.zeros((3, mu.size, 3, len(terms)))
@@ -93,7 +92,7 @@ def moment_rows(mu, alpha):
 
 
 def moments_fit():
-    """Coefficients that best match mean, spread and skewness of the facets' cosines."""
+    """Coefficients that best match the mean, spread and skewness of the facets' cosines."""
     mu, alpha = grid()
     mean, deviation, skewness = facet_moments(mu, alpha)
     b = np.clip(BEND * skewness, -0.8, 0.8)

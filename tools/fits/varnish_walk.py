@@ -3,11 +3,10 @@
 
 In `dielectric_over_eon`, EON receives the light that the dielectric does not reflect, and all light
 from EON leaves. `varnished` has closed forms for light that leaves and for internal reflections.
-The random walks in this file go between EON and GGX facets, and from facet to facet as in
-[Heitz2016], so the interface loses no light. For each rho, the script prints the ratios of both
-models' albedos to the albedo of the walk and the largest error of `varnished`. It also prints the
-ratios of `varnished` to the walk for the light that EON returns into each of twelve bins of the
-hemisphere.
+The random walks visit EON and GGX facets, and go from facet to facet as in [Heitz2016], so the
+interface loses no light. For each rho, the script prints the ratios of both models' albedos to the
+albedo of the walk and the largest error of `varnished`. The script also prints `varnished` divided
+by the walk for light from EON in each of twelve bins of the hemisphere.
 """
 
 from itertools import product
@@ -21,20 +20,20 @@ from mxeon.models.sampling import eon_sample, visible_normal
 SEED, PATHS = 1, 1 << 18
 FAINT = 1e-5  # paths with a smaller weight end
 RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
-BINS, NODES = (4, 3), 8  # bins of squared cosine and of half the azimuth; nodes per bin
+BINS, NODES = (4, 3), 8  # bins of squared cosine and of azimuth, and nodes per bin
 COSINES, ROUGHNESSES = (1.0, 0.5, 0.15, 0.05), (0.0, 1.0)
 ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def interface(w, alpha, ior, rng):
-    """Directions, z >= 0, in which light from w leaves the facets, and which are transmitted."""
+    """Directions, z >= 0, in which light from w leaves, and whether the light is transmitted."""
     out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
-    # The state of a path is its number, its direction, the share of the facets' heights below the
-    # path's height, and whether the path is below the interface.
+    # For each path: number, direction, share of facets that are lower than the path, and whether
+    # the path is below the interface.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:
         # By [Heitz2016], the distance to the next facet depends on Lambda, which is negative for
-        # directions downwards.
+        # downward directions.
         tangent2 = (1.0 - d[:, 2] ** 2) / np.maximum(d[:, 2] ** 2, 1e-12)
         root = np.sqrt(1.0 + alpha**2 * tangent2)
         Lambda = np.maximum(0.5 * (np.where(d[:, 2] > 0.0, root, -root) - 1.0), -1e9)
@@ -44,7 +43,6 @@ def interface(w, alpha, ior, rng):
         leaves = (height > 1.0) & (d[:, 2] > 0.0)
         out[i[leaves]], transmitted[i[leaves]] = d[leaves], below[leaves]
         i, d, height, below = (each[~leaves] for each in (i, d, height, below))
-        # Reflect or refract at a facet.
         u2, u1 = rng.random((2, i.size))
         eta, h = np.where(below, 1.0 / ior, ior), visible_normal(-d.T, u1, u2, (alpha, alpha)).T
         c = -(d * h).sum(axis=1)
@@ -58,7 +56,7 @@ def interface(w, alpha, ior, rng):
 
 
 def walk(mu, roughness, alpha, ior, paths=PATHS):
-    """Light that a path returns for each of RHO, (paths, 5), and final directions, (paths, 3)."""
+    """Light returned by each path for each of RHO, (paths, 5), and final directions, (paths, 3)."""
     rng = np.random.default_rng(SEED)
     out, below = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
     total, weight = np.where(below, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
@@ -80,7 +78,7 @@ def view(mu):
 
 
 def walked_bins(total, out):
-    """Light that EON returns into each bin, for each nonzero rho, (12, 4)."""
+    """Light from EON in each bin by random walks, for each nonzero rho, (12, 4)."""
     azimuth = np.abs(np.arctan2(out[:, 1], out[:, 0])) / np.pi
     row, column = (
         np.minimum((x * n).astype(int), n - 1)
@@ -92,7 +90,7 @@ def walked_bins(total, out):
 
 
 def model_bins(mu, *inputs):
-    """Light that EON returns into each bin by the model `varnished`, as in `walked_bins`."""
+    """Light from EON in each bin by the model `varnished`, for each nonzero rho, (12, 4)."""
     x, weight = (each / 2.0 for each in np.polynomial.legendre.leggauss(NODES))
     square, azimuth = ((np.arange(n)[:, np.newaxis] + 0.5 + x) / n for n in BINS)
     square, azimuth = square[:, np.newaxis, :, np.newaxis], np.pi * azimuth[:, np.newaxis]
@@ -107,7 +105,7 @@ def model_bins(mu, *inputs):
 
 
 def rows(paths=PATHS):
-    """Yield albedos of both models and the walk, (3, 5), and ratios of bins, (12, 4), by case."""
+    """Yield albedos of both models and of the walk, (3, 5), and ratios of bins, (12, 4)."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
         total, out = walk(mu, *inputs, paths)

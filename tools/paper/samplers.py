@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The samplers of EON that the paper compares, and the moments of the weights of samples."""
+"""Samplers of EON, and the moments of sample weights."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from mxeon.models.diffuse import eon_brdf
 class Sampler(NamedTuple):
     """A sampler and the probability density of the samples."""
 
-    name: str  # prefix of function names, such as `ltc` of `ltc_sample` and `ltc_pdf`
+    name: str  # prefix of function names, such as `ltc` in `ltc_sample`
     sample: Callable[..., tuple[Array, Array]]  # sample(wo, u, roughness) -> wi, pdf
     pdf: Callable[..., Array]  # pdf(wo, wi, roughness)
     title: str  # name in plots and tables
@@ -38,8 +38,8 @@ SAMPLERS = (
     Sampler("eon", sampling.eon_sample, sampling.eon_pdf, "exact"),
 )
 BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
-# Variance of exact samples, which is not 0 because two fits change the true density of the samples
-# by up to 1.3e-5.
+# Variance of EON's exact sampler, which is not 0 because two fits change the true density by up to
+# 1.3e-5.
 EXACT_VARIANCE = 1.7e-10
 
 
@@ -50,7 +50,7 @@ def moments(
     light: Callable[[Array], Array] | None = None,
     nodes: int = 96,
 ) -> tuple[float, float, float]:
-    """Mean, variance and maximum, by quadrature, of the weight of a sample times a radiance.
+    """Mean, variance and maximum of the weight of a sample times a radiance, by quadrature.
 
     The weight is f cos(theta_i) / p for EON at unit reflectance, and 0 below the horizon.
     """

@@ -37,7 +37,7 @@ def in_percent(share: float) -> str:
 
 
 def brief(difference: Difference) -> str:
-    """Text with a picture's largest difference and the share of the object that visibly differs.
+    """Largest difference of a picture, and the share of the object that visibly differs.
 
     >>> brief(Difference("back", 0.2035, False, 0.124))
     '+20 %, visible on 12 %'

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes OSL versions of GLSL files and some tables of pages: `python -m tools.site`.
+"""Writes OSL versions of GLSL files and generated tables of pages: `python -m tools.site`.
 
-The command needs no engine and no other version of MaterialX. Separate commands make the
-measurements on hosts (`specification`, `field`, `versions`, `ledger.measure`) and the pictures.
+The command needs no rendering engine. Separate commands in `tools.site` make measurements on hosts,
+and pictures.
 """
 
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Updates the list in docs/arrays.md of functions that accept no arrays of PyTorch or JAX."""
+"""Updates the list of functions in docs/arrays.md that accept no arrays of PyTorch or JAX."""
 
 import inspect
 import re
@@ -25,18 +25,18 @@ def public():
 
 
 def arrays(function):
-    """Names of a function's array arguments, which are the arguments that have gradients."""
+    """Names of a function's array arguments."""
     parameters = inspect.signature(function).parameters.values()
     return [each.name for each in parameters if each.annotation in ARRAYS]
 
 
 def page(text):
-    """The page with a new list of functions that accept no arrays of other libraries."""
+    """The page with a new list of functions that only accept NumPy arrays."""
     functions = public().items()
     exceptions = [
         f"`{name.rpartition('.')[2]}`"
         for name, each in functions
-        if inspect.unwrap(each) is each  # a function that accepts arrays of any library is wrapped
+        if inspect.unwrap(each) is each  # functions for arrays of any library are wrapped
     ]
     line = (
         "Every public function of arrays in `mxeon.models` takes them, and\nhas gradients with respect to every argument of the type `ArrayLike`. "

@@ -31,7 +31,7 @@ def main() -> None:
         tab = browser.new_page(viewport=SIZE)
         tab.goto(file.as_uri())
         tab.get_by_text("shader, float32").first.wait_for()
-        tab.wait_for_timeout(5000)  # until the edges of the picture are smooth
+        tab.wait_for_timeout(5000)  # the explorer smooths edges over time
         tab.screenshot(path=PICTURE)
         browser.close()
 

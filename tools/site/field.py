@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The site's page that compares renderers, and the measurements on that page.
+"""Makes the site's page that compares renderers.
 
 `python -m tools.site.field` measures the available hosts. `python -m tools.site.field DIR` reads
-reports from a folder instead. Old measurements of hosts without a new report are kept.
+reports from a folder instead. Stored measurements of other hosts are kept.
 """
 
 import base64
@@ -32,7 +32,7 @@ from mxeon.survey.field import Entry, by_harm, read_field
 from mxeon.survey.field_page import INPUTS, SCENES, Frame, frames, render
 
 DATA = Path(__file__).with_name("field.json")
-PICTURES = DATA.with_suffix(".webp")  # all portraits and difference maps, ACROSS pictures per row
+PICTURES = DATA.with_suffix(".webp")  # portraits and difference maps, ACROSS per row
 SIZE, ACROSS = 96, 8
 PAGES = "upstream/{}.html"  # ledger pages, relative to field.html in the built site
 EXAMPLE = examples_folder() / "clay.mtlx"
@@ -47,7 +47,7 @@ class Row:
 
     - `entry`: The entry with the largest error among entries with the same cause of failure.
     - `same`: Library and node of each other entry with the same cause.
-    - `frames`: The scale of the difference map and the largest difference, by scene.
+    - `frames`: By scene, the scale of the difference map and the largest difference.
     """
 
     entry: Entry
@@ -56,7 +56,7 @@ class Row:
 
 
 def read() -> tuple[list[Row], Iterator[NDArray[np.uint8]]]:
-    """The stored rows, and a portrait and a difference map for each row and scene."""
+    """The stored rows, with a portrait and a difference map for each row and scene."""
     rows = make_converter().structure(json.loads(DATA.read_text(encoding="utf-8")), list[Row])
     lines = np.asarray(Image.open(PICTURES)).reshape(-1, SIZE, ACROSS, SIZE, 3)
     return rows, iter(lines.swapaxes(1, 2).reshape(-1, SIZE, SIZE, 3))
@@ -121,7 +121,7 @@ def write(rows: list[Row], pictures: list[NDArray[np.uint8]]) -> None:
     records = make_converter().unstructure(rows)
     for cell in (cell for record in records for cell in record["entry"]["cells"].values()):
         for key in [key for key, value in cell.items() if value in (None, "", [], {})]:
-            del cell[key]  # readers restore the default value
+            del cell[key]  # reading restores the default value
     write_text(DATA, "[\n" + ",\n".join(map(json.dumps, records)) + "\n]\n")
     blank = np.zeros((-len(pictures) % ACROSS, SIZE, SIZE, 3), np.uint8)
     lines = np.concatenate([pictures, blank]).reshape(-1, ACROSS, SIZE, SIZE, 3)
@@ -135,7 +135,7 @@ def pixels(uri: str) -> NDArray[np.uint8]:
 
 
 def essential(entry: Entry) -> Entry:
-    """A copy of an entry with only the fields that the page shows."""
+    """A copy of an entry with the fields that the page shows."""
     cells = {
         column: replace(
             cell,

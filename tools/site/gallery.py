@@ -29,14 +29,14 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-# Description and largest value of stock MaterialX's difference from the reference, by material.
+# Description and size of stock MaterialX's largest difference from the reference, by material.
 DIFFERENCES = PICTURES / "differences.json"
 SIZE = 512  # width and height of a picture in pixels
 INSET, EDGE = 112, 8  # width of the inset, and distance from the edge, in pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # height of the studio's latitude-longitude map in pixels
-# Each soft box has an azimuth from the viewer and an elevation in degrees, a half width and a half
-# height in degrees, and a radiance as RGB.
+# Soft boxes, as azimuth relative to the viewer, elevation, half width and half height, all in
+# degrees, and RGB radiance.
 BOXES = (
     ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
     ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),
@@ -101,8 +101,7 @@ def studio():
 def pictures(host, document):
     """For each material, the name, the pictures, and the difference between stock and eonlib.
 
-    The last picture is made with eonlib. The first picture is made with stock MaterialX, unless
-    stock MaterialX cannot generate the material.
+    The pictures are made with stock MaterialX, if possible, and with eonlib.
     """
     shaders, scene = [], replace(STUDIO, size=SIZE)
     if "furnace" in document.stem:
@@ -120,7 +119,7 @@ def pictures(host, document):
 
 
 def sphere_picture(image):
-    """A picture of a sphere, reduced to SIZE pixels with a margin of background."""
+    """A picture of a sphere with SIZE pixels and a margin of background."""
     mask = visible(len(image), "sphere").mask[..., None]
     codes = np.where(mask, srgb_encoded(image), np.uint8(BACKGROUND))
     inner = SIZE - SIZE // 8
@@ -137,7 +136,7 @@ def label(image, place, text, size=22, anchor="ls"):
 
 
 def save(path, pictures, difference_map):
-    """Save pictures side by side, labeled if there are two. The difference is an inset."""
+    """Save pictures side by side. Two pictures get labels, and the difference as an inset."""
     image = Image.new("RGB", (SIZE * len(pictures), SIZE))
     for number, each in enumerate(pictures):
         image.paste(each, (number * SIZE, 0))
@@ -180,7 +179,7 @@ def judge():
 
 
 def page():
-    """Markdown of the gallery, with documents and materials in order of decreasing difference."""
+    """Markdown of the gallery. The largest differences come first."""
     found = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
     equal = [name for name, (description, _) in found.items() if not description]
     sections = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MkDocs hooks that add pages from outside `docs/`, adapt links and fill in ledger pages."""
+"""MkDocs hooks that add pages from outside `docs/`, adapt links, and complete ledger pages."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ from tools.site import explorer, field
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
-# Pages of the site made from files outside `docs/`, whose links are relative to the root.
+# Pages made from files outside `docs/`. Links in these files are relative to the root.
 OUTSIDE = {
     "index.md": "README.md",
     "changelog.md": "CHANGELOG.md",
@@ -31,7 +31,7 @@ def on_files(files, config):
 
 
 def on_page_markdown(markdown, page, **_):
-    """Fill in ledger pages, adapt links to the site and hide navigation on top-level pages."""
+    """Complete ledger pages, adapt links, and hide the navigation on top-level pages."""
     if page.parent is None:
         page.meta["hide"] = ["navigation"]
     if page.file.src_uri.startswith("upstream/"):
@@ -45,7 +45,7 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_page_content(html, page, **_):
-    """Prevent line breaks before units, split side-by-side pictures, and adapt links of wall.md."""
+    """Prevent line breaks before units, compare halves of pictures, and adapt links of wall.md."""
     html = unbroken(html)
     if page.file.src_uri == "wall.md":
         return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')
@@ -55,7 +55,7 @@ def on_page_content(html, page, **_):
 
 
 def _halves(found):
-    """HTML that splits a picture of stock and eonlib. HTML of any other picture is unchanged."""
+    """HTML that compares the halves of a side-by-side picture. Other pictures are unchanged."""
     width, height = Image.open(ROOT / "docs" / found[2]).size
     if width != 2 * height:
         return found[0]

@@ -23,7 +23,7 @@ from tools.site import DOCS, with_block
 
 PAGE = DOCS / "note.md"
 GLASS, DENSE = 1.5, 3.0
-SCHLICK = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0  # color0, color82, color90
+SCHLICK = (0.04, 0.25, 0.6), (1.0, 0.5, 0.8), 1.0
 ROUGH = (1.0, 1.0)
 VIEWS = np.linspace(0.02, 1.0, 50)
 STYLE = {
@@ -81,8 +81,7 @@ def loss_errors(mu):
 def loss_figures():
     """Largest absolute and relative errors of 1 - E.
 
-    The formulas of the paper are evaluated at 4001 cosines from 1e-6 to 1, and the formulas of
-    eonlib at all float32 numbers from 1e-6 to 1.
+    Cosines are all float32 numbers from 1e-6 to 1. The paper's formulas use 4001 of these cosines.
     """
     mu = np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
     errors, exact = loss_errors(mu)
@@ -110,12 +109,12 @@ def loss_figures():
 
 
 def variances(name, roughness, mu):
-    """Variance, by quadrature, of a sampler's weight at unit reflectance for each mu."""
+    """Variance of a sampler's weight at unit reflectance for each mu, by quadrature."""
     return np.array([moments(name, each, roughness)[1] for each in mu])
 
 
 def albedo_errors(mu, alpha):
-    """Errors of E_ss in MaterialX's fit, and in eonlib's fit as a function of z and alpha."""
+    """Errors of MaterialX's and eonlib's fits of E_ss."""
     exact = models.ggx_albedo_dir(mu, alpha)
     ours = albedo_fit.fitted(mu, alpha, shipped("ggx_albedo", "ggx_missing"))
     return fitted_albedo(mu, alpha, 1.0, 1.0) - exact, ours - exact
@@ -124,8 +123,7 @@ def albedo_errors(mu, alpha):
 def fresnel_errors(mu, alpha, ior=GLASS):
     """Errors of three formulas for a dielectric's albedo without energy compensation.
 
-    The formulas are E_ss F(mu), MaterialX's fit for Schlick's curve with the same F0, and E_ss
-    F(c).
+    The formulas are E_ss F(mu), E_ss F(c), and MaterialX's fit for Schlick's curve.
     """
     curves = cosine_fit.DIELECTRIC
     shape = np.sqrt((ior - 1.0) / (ior + 1.0))
@@ -165,7 +163,7 @@ def largest_figures():
 
 
 def energy_rows():
-    """Rows with an equation, an interpretation, and the albedos of a white surface."""
+    """Table rows with an equation, an interpretation, and the albedos of a white surface."""
     mu = VIEWS
     wo = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
     E = models.ggx_albedo_dir(mu, 1.0)
@@ -173,7 +171,7 @@ def energy_rows():
         function(wo, 1.0, ROUGH, GLASS)[:, 0]
         for function in (dielectric_albedo_dir, transmission.dielectric_transmittance_dir)
     )
-    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views in the planes of tangent and bitangent
+    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views in the planes of both tangents
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
     compensated = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # IOR 0 means total reflection
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", compensated
@@ -213,7 +211,7 @@ def page(text):
 
 
 def exact_figure():
-    """Figure of errors in the energy that FON loses, and of the variance of EON's samplers."""
+    """Plot the errors of FON's energy loss, and the variance of EON's samplers, over the cosine."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.unique(np.geomspace(1e-6, 1.0, 400).astype(np.float32))
@@ -233,7 +231,7 @@ def exact_figure():
 
 
 def albedo_figure():
-    """Figure of the errors of albedos of GGX and of a dielectric, as functions of the cosine."""
+    """Plot the errors of the albedos of GGX and of a dielectric over the cosine."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.geomspace(1e-3, 1.0, 120)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the largest errors of stock and eonlib relative to the specification.
+"""Measures the largest deviations of stock MaterialX and eonlib from the specification.
 
 `python -m tools.site.specification` measures the table in results.md on gl, in a few seconds.
 """
@@ -14,8 +14,8 @@ from tools.site import DOCS, with_block
 from tools.site.ledger import figure
 
 PAGE = DOCS / "results.md"
-HOST, LIBRARIES = "gl", ("stock", "eonlib")  # host and libraries of the table
-# Each row of the table has a check, a subject, and what stock MaterialX computes.
+HOST, LIBRARIES = "gl", ("stock", "eonlib")
+# Rows as check, subject, and a description of what stock MaterialX computes.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
     ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),
@@ -41,7 +41,7 @@ SUMMARY_HEAD = (
 
 
 def measured():
-    """Results of the table's checks with stock MaterialX and with eonlib."""
+    """Results of all checks in the table, with stock MaterialX and with eonlib."""
     rows = {row[:2] for row in SUMMARY}
     nodes = sorted({subject.split(",")[0] for _, subject in rows})
     tasks = make_plan((), (HOST,), LIBRARIES, nodes=nodes).tasks

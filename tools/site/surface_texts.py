@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the tables of surfaces.md, which say how shaders follow their specifications.
+"""Writes the tables of surfaces.md, which compare surface shaders with their specifications.
 
-`python -m tools.site.surface_texts` checks each sentence on HOSTS with the installed MaterialX, and
-on gl with VERSIONS of MaterialX, in ten minutes.
+`python -m tools.site.surface_texts` checks each sentence of the specifications on all HOSTS with
+the installed MaterialX, and on gl with all VERSIONS, in ten minutes.
 """
 
 import json
@@ -35,7 +35,7 @@ OPTIONS = [word for name in NAMES for word in ("--node", name)]
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
 )
-# Statements without a check. Each row has specification, section, statement and reason.
+# Statements without a check, as specification, section, statement and reason.
 # fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),
@@ -60,7 +60,7 @@ NOT_JUDGED = (
 def rows(
     text: Text, results: Mapping[str, Mapping[str, Result]], verdicts: Verdicts
 ) -> Iterator[str]:
-    """Table rows of a specification, with the verdict on gl and any other verdicts."""
+    """Table rows of a specification, with the verdict on gl and any differing verdicts."""
     for spec in (each for each in SENTENCES if each.text is text):
         places: dict[str, list[str]] = defaultdict(list)
         for place, verdict in verdicts[spec.title].items():
@@ -76,7 +76,7 @@ def rows(
 
 
 def actual_form(result: Result) -> str:
-    """A formula by which a shader deviates from the specification, with the error, or ""."""
+    """The formula that a shader uses instead of the specification, with the error, or ""."""
     if result.verdict == PASSED:
         return ""
     cause = result.diagnosis.first
@@ -98,7 +98,6 @@ def defaults(text: Text) -> Iterator[str]:
 
 
 def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
-    """Results of `mxeon check --json` on gl with the given version of MaterialX."""
     done = run(wheel(version), "check", "--host", "gl", "--workers", "0", "--json", *options)
     if done.returncode not in (0, 1):
         raise RuntimeError(f"MaterialX {version}: {done.stderr}")
@@ -106,7 +105,7 @@ def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
 
 
 def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
-    """Results by subject and host, and a verdict for each subject and each host or version."""
+    """Results by subject and host, and verdicts by subject and by host or version."""
     results: dict[str, dict[str, Result]] = defaultdict(dict)
     verdicts: Verdicts = defaultdict(dict)
     for host in HOSTS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks eonlib and stock with all versions of MaterialX: `python -m tools.site.versions`.
+"""Checks eonlib and stock MaterialX with all versions: `python -m tools.site.versions`.
 
 The command runs `mxeon check --host gl --node all` and the checks of all surface shaders'
 specifications with each version, in 14 minutes of processor time. Results are stored in
@@ -27,11 +27,11 @@ COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--li
 def record(versions):
     """Data for pages of the site, computed from the results in `versions`, by version.
 
-    - `nodes`: Number of results by library, version, node and verdict. Sentences of specifications
-      of surface shaders are not counted, because surfaces.md has the verdicts on sentences.
-    - `open`: Subjects for which eonlib does not pass, by version and by check and verdict.
-    - `pages`: Whether all rows of a ledger page pass, by page and version, for pages about
-      MaterialX on gl or about texts in MaterialX.
+    - `nodes`: Number of results by library, version, node and verdict, except verdicts on sentences
+      of specifications, which surfaces.md has.
+    - `open`: Subjects that eonlib does not pass, by version, check and verdict.
+    - `pages`: Whether all checks of a ledger page pass, by page and version, for pages about
+      MaterialX that need no host except gl.
     """
     found = {
         "commit": (MAIN.parent / "commits.txt").read_text().split(" ", 2)[:2],

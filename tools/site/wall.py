@@ -39,7 +39,7 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "wall.md"
 TILES = DOCS / "images" / "wall"
 SIZE, QUALITY = 192, 85  # width of a tile in pixels, and WebP quality
-LIGHTS = SIDE.name, BACK.name  # scenes that all renderers can draw
+LIGHTS = SIDE.name, BACK.name  # every renderer has these scenes
 BLACK = 1e-3  # a picture with a smaller mean counts as black
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 OTHER_MODELS = re.compile(
@@ -80,12 +80,12 @@ class Tile(NamedTuple):
     """A picture on the wall."""
 
     host: str
-    variant: str  # library or node; "" if the renderer's own nodes draw a document
+    variant: str  # library or node; "" for a renderer's own nodes
     scene: str
     image: NDArray[np.floating]
     difference: Difference
     cause: str  # HTML
-    verdict: str  # CSS class of the figure
+    verdict: str  # also the CSS class of the figure
 
     @property
     def largest(self) -> float:
@@ -108,7 +108,7 @@ def title(tiles: list[Tile]) -> str:
 
 
 def cause_of(result: Result) -> str:
-    """HTML with the wrong lobes, the diagnosis, or the reason why a picture was not judged."""
+    """HTML with the wrong lobes, the diagnosis, or the reason why the picture was not judged."""
     text = wrapped(escape(words.diagnosis(result.diagnosis)))
     if result.check == "finite":
         reason = text.partition(": the")[0].removeprefix(f"{result.host}: ")
@@ -122,7 +122,7 @@ def cause_of(result: Result) -> str:
 
 
 def wrapped(text: str) -> str:
-    """Convert a text to HTML in which lines may break after underscores."""
+    """HTML in which lines may break after underscores."""
     return text.replace("_", "_<wbr>")
 
 
@@ -150,7 +150,7 @@ def figure(
 
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
-    """HTML of the reference and of tiles sorted by difference. Equal captions share a tile."""
+    """HTML of the reference and the tiles, sorted by difference. Equal captions share a tile."""
     groups: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
         groups[each.caption, each.verdict].append(each)
@@ -165,7 +165,7 @@ def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> st
 
 
 class Wall:
-    """Pictures and results of all reports. A later report replaces results of an earlier report."""
+    """Pictures and results of all reports. Later reports replace earlier reports."""
 
     def __init__(self, folders: list[Path]) -> None:
         self.hosts: dict[str, str] = {}
@@ -241,7 +241,7 @@ class Wall:
         )
 
     def rough(self) -> str:
-        """Section about rough diffuse nodes. Equal pictures of the same renderer are shown once."""
+        """Section about rough diffuse nodes, with equal pictures of a renderer only once."""
         reference = pixels(self.references[PORTRAIT, EON, BACK.name])
         tiles: dict[tuple[str, float], Tile] = {}
         for each in self.images:
@@ -253,7 +253,7 @@ class Wall:
 
     @cached_property
     def materials(self) -> list[tuple[str, str]]:
-        """Materials drawn by more than half as many hosts as the most frequently drawn material."""
+        """Materials drawn by more than half as many hosts as the material that most hosts draw."""
         hosts = defaultdict(set)
         for document, element, _, host, _ in self.images:
             if document != PORTRAIT:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs checks on mutants of eonlib, and writes to out/mutants which check detects each mutant.
+"""Runs checks on mutants of eonlib, and writes which check detects each mutant to out/mutants.
 
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
     python -m tools.benchmarks.mutants --seed N [--share 0.1]         some of the operators' mutants
 
 A survivor is a mutant that no check detects. The exit status is 0 if the survivors are exactly the
-mutants that are listed as survivors, otherwise 1.
+known survivors, otherwise 1.
 """
 
 import argparse

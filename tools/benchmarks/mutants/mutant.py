@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of mutants, which are single textual changes of eonlib, read from `table/*.toml`.
+"""The mutants in `table/*.toml`, which are single textual changes of eonlib.
 
-For each file in the table, a negative control changes only the first comment. No check may detect a
+For each mutated file, a negative control changes only the first comment. No check may detect a
 negative control.
 """
 
@@ -15,10 +15,10 @@ from mxeon.shaders.functions import STEMS
 
 TABLE = Path(__file__).with_name("table")
 ROOT = Path(__file__).resolve().parents[3]
-TWINS = (*STEMS, "hair_parameters")  # files whose functions are the same in GLSL and OSL
+TWINS = (*STEMS, "hair_parameters")  # files with the same functions in GLSL and OSL
 FOLDERS = ("libraries", "genglsl", "genosl")  # folders of eonlib
-CONTROLS = "Negative controls"  # group of the mutants that change a comment
-COMMENT = "SPDX-License-Identifier"  # part of the first comment of every file
+CONTROLS = "Negative controls"
+COMMENT = "SPDX-License-Identifier"  # the first comment of every file has this text
 
 
 @dataclass(frozen=True)
@@ -30,13 +30,13 @@ class Mutant:
     file: str  # path of the mutated file from the root
     old: str  # text to replace, which occurs once in the file
     new: str  # replacement of `old`
-    reason: str  # why the change is wrong, or why the change is equivalent
-    host: str  # cheapest host that can detect the mutant; "text" if no host is needed
-    equivalent: bool  # whether values stay the same on the whole valid domain
-    survives: bool  # whether the mutant is known to pass all checks; `reason` says why
-    tests: tuple[str, ...] = ()  # test files to run first on a wrong reference
+    reason: str  # why the change is wrong, or why values stay the same
+    host: str  # cheapest host that detects the mutant; "text" if no host is needed
+    equivalent: bool  # whether no valid input reveals the change
+    survives: bool  # whether the mutant is known to pass all checks
+    tests: tuple[str, ...] = ()  # tests to run first if the reference is wrong
     operator: str = ""  # name of the operator that made the mutant
-    place: tuple[int, int] = (0, 0)  # start and end of the operator's match in the file
+    place: tuple[int, int] = (0, 0)  # start and end of the mutated code in `file`
 
     def texts(self) -> dict[str, str]:
         """Texts of the mutated files by path, including the OSL version of a GLSL file."""

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All mutants of the operators compiled into one program, in which a uniform selects a mutant.
+"""Compiles many mutants into one program, in which a uniform selects the active mutant.
 
 Each mutated expression equals the original expression unless the uniform `mutant` has the number of
 the mutant. For example, ` + ` becomes ` + mutant_sign(mutant == 7) * `. So a node's shader is
-compiled once for hundreds of mutants, and each mutant takes only the milliseconds of a check on a
-subset of samples. A uniform cannot select mutants of constant expressions and of integers, which
-are called UNWRITTEN and need a separate library.
+compiled once for hundreds of mutants. Mutants of constant expressions and of integers cannot be
+selected by a uniform, and so are reported as UNWRITTEN.
 """
 
 import re
@@ -63,7 +62,7 @@ ERROR = re.compile(r"\b\d+:(\d+)\(\d+\): error")
 
 @dataclass(frozen=True)
 class Edit:
-    """Text to insert around a part of a source, or to replace the part if `token` is set."""
+    """Text to insert around a part of a source. The text replaces the part if `token` is set."""
 
     start: int
     end: int
@@ -91,8 +90,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
     if operator == "product" and (last := _operand(code, end)):
         return [wrapped(end, last, "over")]
     if operator == "comparison":
-        # Compare the result with the selection of the mutant, so that a selected mutant inverts the
-        # result.
+        # A selected mutant inverts the result of the comparison.
         return [Edit(start, _end(code, end), "", f" != {on}")]
     if operator == "channel":
         old, new = (CHANNELS[each[1]] for each in (found, put))
@@ -131,7 +129,7 @@ def _operand(code: str, place: int) -> int:
 
 
 def _end(code: str, place: int) -> int:
-    """End of the right side of a comparison whose right side starts at `place`."""
+    """End of a comparison, whose right side starts at `place`."""
     depth = 0
     for each in re.compile(r"[()\[\]]|[;,?:]|&&|\|\|").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -141,7 +139,6 @@ def _end(code: str, place: int) -> int:
 
 
 def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
-    """A source with the edits of all `mutants`, which are given by number."""
     code = operators.code_of(text)
     made = [each for number, mutant in mutants.items() for each in edits(number, mutant, code)]
     opens: dict[int, list[str]] = {}
@@ -165,13 +162,13 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
 
 
 class SchemataHost(gl.GlHost):
-    """The gl host with the mutants `alive` in all shaders. `mutant` is the active mutant, or 0."""
+    """The gl host with undetected mutants in all shaders. `mutant` is the active mutant, or 0."""
 
     def __init__(self) -> None:
         super().__init__()
         self.alive: dict[int, Mutant] = {}
         self.mutant = 0
-        self.unwritten: set[int] = set()  # numbers of mutants that cannot be compiled into a shader
+        self.unwritten: set[int] = set()  # mutants that cannot be compiled
         self._made = lru_cache(maxsize=gl.PROGRAMS)(self._schema)
         self._program = self._chosen  # type: ignore[assignment]
 
@@ -218,14 +215,14 @@ class SchemataHost(gl.GlHost):
         return pixel.replace("/*mutants*/", HELPERS, 1)
 
     def numbers_in(self, pixel: str) -> list[int]:
-        """Numbers of the undetected mutants in the text of a shader."""
+        """Numbers of the undetected mutants that are in a shader."""
         files = {each.file for each in self.alive.values()}
         known = {file for file in files if chunk_of(file) in pixel}
         return [number for number, each in self.alive.items() if each.file in known]
 
 
 def _numbers_at(text: str, error: str) -> set[int]:
-    """Numbers of mutants on the line of a compiler error, or on the nearest earlier line."""
+    """Numbers of mutants on the nearest line with mutants at or before a compiler error."""
     lines, found = text.splitlines(), set[int]()
     for place in map(int, ERROR.findall(error)):
         numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
@@ -235,12 +232,12 @@ def _numbers_at(text: str, error: str) -> set[int]:
 
 @cache
 def chunk_of(file: str) -> str:
-    """The text of a source after the last include. Shaders contain this text unchanged."""
+    """The text of a source after the last include, which shaders contain unchanged."""
     text = (ROOT / file).read_text(encoding="utf-8")
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
 
-# Checks in FIRST detect most mutants. Checks in LAST take longest and so run last.
+# Checks in FIRST detect most mutants. Checks in LAST take longest.
 FIRST = (
     *("value", "environment", "layering", "denser", "output", "radiance", "sphere_mean"),
     *("film_visible", "combination", "combined_throughput"),
@@ -249,23 +246,22 @@ LAST = (
     *("frame", "finite", "layer", "integral", "energy", "states", "lossless", "domain", "sky"),
     *("narrow_lobes", "tilted_lobes", "wide_lobes", "straight_views", "low_index", "each_lobe"),
 )
-COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # specs of which each lobe is also checked separately
+COMPOSED = (CombinedSpec, SurfaceShaderSpec)  # specs whose lobes are also checked separately
 UNWRITTEN = "unwritten"
 OSL_TWINS = {
     functions.source_file("osl", stem).relative_to(ROOT).as_posix()
     for stem in (*functions.STEMS, "ggx_albedo", "conty_kulla_albedo")
 }
-# Sources with code for path tracers and with functions that only OSL calls. No check of a node runs
-# this code.
+# Code for path tracers and functions that only OSL calls, which no check of a node runs.
 NOT_CHECKED = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
-STRIDE = 8  # shader functions are evaluated at every eighth point
+STRIDE = 8
 GROUP = 1024  # mutants per program; larger programs slow the driver down
-Checks = Callable[[], Iterator[tuple[str, bool]]]  # yields each check, and whether the check failed
+Checks = Callable[[], Iterator[tuple[str, bool]]]  # pairs of a check and whether the check failed
 Subject = tuple[str, bool, str, Checks]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """Results by mutant: SURVIVED, UNWRITTEN, or the check and subject that detect the mutant."""
+    """For each mutant: SURVIVED, UNWRITTEN, or the check and the subject that detect the mutant."""
     twins = [each for each in mutants if each.file in OSL_TWINS]
     glsl = [each for each in mutants if each.file.startswith("genglsl/")]
     numbered = dict(enumerate((m for m in glsl if not m.file.startswith(NOT_CHECKED)), 1))
@@ -284,14 +280,14 @@ def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
 
 
 def differs_from_glsl(mutant: Mutant) -> bool:
-    """Whether a mutated OSL function or constant differs from GLSL, which a check must report."""
+    """Whether a mutated OSL function or constant differs from GLSL."""
     texts = (ROOT / mutant.file.replace("osl", "glsl")).read_text(), mutant.texts()[mutant.file]
     glsl, osl = (functions.parts(operators.COMMENT.sub(" ", each)) for each in texts)
     return glsl != osl
 
 
 def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
-    """Numbers of detected mutants, each with the check that detects the mutant.
+    """Numbers of detected mutants, and the check that detects each mutant.
 
     Detected mutants are removed from the host. A composed subject is checked only with mutants that
     no other subject contains.
@@ -312,13 +308,13 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects, each with title, whether lobes are composed, shader text, and the checks."""
+    """Subjects as title, whether the spec is in COMPOSED, shader text, and checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
-    # Films are checked before transmission, because transmission runs the same code without a film.
+    # Films come before transmission, which runs the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
     made = [make_case(Evaluating, host, s, "eonlib") for s in specs if s.title != "measured_edf"]
-    cases = [replace(case, control=True) for case in made]  # controls use a subset of the samples
+    cases = [replace(case, control=True) for case in made]  # a subset of the samples
     for turn in range(3):
         for case in cases:
             composed, text = isinstance(case.spec, COMPOSED), case.evaluating.shader.stages["pixel"]
@@ -326,7 +322,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def node_checks(case: Case, turn: int) -> Checks:
-    """A function that runs one of three groups of a node's checks. `turn` selects the group."""
+    """Runs the first, second or third group of a node's checks, by `turn`."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
@@ -347,7 +343,7 @@ def node_checks(case: Case, turn: int) -> Checks:
 
 
 class Functions:
-    """Checks of all shader functions, evaluated in one call at a subset of the usual points."""
+    """Checks of all shader functions, which one call evaluates at every STRIDE-th point."""
 
     def __init__(self, host: SchemataHost) -> None:
         self._host, self.language = host, host.language
@@ -359,7 +355,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::STRIDE]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Execute a call on the host. Store a call of all functions with every STRIDE-th point."""
+        """Execute a call, and store a call of all functions with every STRIDE-th point."""
         if function == functions.EACH:
             self._call = source, function, *(np.asarray(each)[::STRIDE] for each in arguments)
         return self._host.execute(source, function, *arguments)

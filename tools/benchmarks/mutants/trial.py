@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests a mutant by running `mxeon check` on a mutated copy of eonlib, cheapest tasks first.
 
-A mutant of pbrlib is tested by the checks of all nodes that use the mutated code. Mutants of other
-sources are tested by all checks of a library, and wrong references by the tests of the models,
-which run on a copy of mxeon.
+A mutant of pbrlib is tested by the checks of all nodes that use the mutated code. A mutant of the
+reference is tested by the tests of the models, which run on a mutated copy of mxeon. Any other
+mutant is tested by all checks of eonlib.
 """
 
 import os
@@ -35,32 +35,33 @@ from tools.benchmarks.mutants import operators
 from tools.benchmarks.mutants.mutant import FOLDERS, ROOT, Mutant
 
 KILLED, SURVIVED = "killed", "survived"
-CRASHED = "crashed"  # a check ended with a traceback
-TEXT, TESTS = "text", "tests"  # values of `host` for mutants that no host detected
+CRASHED = "crashed"
+TEXT, TESTS = "text", "tests"  # values of `host` if no host is needed
 
-PATH = "genglsl/path/"  # folder of code for path tracers, which no check runs
-# Tests of mutants, by folder of the mutated file. For PATH, the tests replace the checks. For other
-# folders, the tests run after the checks, because no check can detect some of the mutants.
+PATH = "genglsl/path/"  # code for path tracers, which no check runs
+# Tests by folder of the mutated file. For PATH, the tests replace the checks. For other folders,
+# the tests run after the checks, which cannot detect some mutants.
 FOLDER_TESTS = {
     PATH: ("tests/shaders/test_path_tracing.py",),
-    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # this test runs Blender's OSL
+    "genosl/cycles/": ("tests/hosts/test_osl.py",),  # runs Blender's OSL
     operators.ENVIRONMENT: (
         "tests/conformance/test_conformance.py::test_other_lobes_are_lit_alike_by_eonlib_s_lookups",
         "tests/hosts/test_document_hosts.py::"
         "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
     ),
 }
-LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, which no file includes
-NOISY = ("environment", "furnace")  # slowest checks on Cycles; run these checks last
-# Files that no shader for gl contains, so that the gl host cannot detect mutants in these files.
+LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups without an #include
+NOISY = ("environment", "furnace")  # slowest checks on Cycles
+# The gl host cannot detect mutants in the following files, because its shaders do not use the
+# files.
 ON_CYCLES = ("genosl/",)
-CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures, which only the host osl evaluates
+CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures that only the host osl evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
-TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)  # files whose text is checked first
+TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)
 
 
 def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
-    """Verdict on a mutant, the failed checks of the first task that fails, and the first cause."""
+    """Verdict on a mutant, the failed checks of the first failed task, and the first cause."""
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
@@ -94,7 +95,7 @@ def by_checks(mutant: Mutant, judge: Judge) -> dict[str, Any]:
 
 
 def killed(host: str, checks: Sequence[str], explanation: str) -> dict[str, Any]:
-    """Record of a detected mutant. The explanation is reduced to the first line."""
+    """Record of a detected mutant, with the first line of the explanation."""
     line, folder = explanation.strip().split("\n")[0], re.escape(tempfile.gettempdir())
     line, found = re.sub(rf"{folder}/\S*/", "", line), list(dict.fromkeys(checks))
     return {"verdict": KILLED, "host": host, "checks": found, "explanation": line}
@@ -110,7 +111,7 @@ def write_wrong(mutant: Mutant, base: str, *folders: str) -> None:
 
 @contextmanager
 def wrong_library(mutant: Mutant) -> Iterator[str]:
-    """Path of a mutated copy of eonlib. The folder is new, so that no cache has the library."""
+    """Path of a mutated copy of eonlib, in a new folder that no cache knows."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, *FOLDERS)
         try:
@@ -121,7 +122,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 
 
 def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
-    """Failures that unchanged eonlib does not have, from the first task with such failures."""
+    """New failures of the first task that has failures that unchanged eonlib does not have."""
     for task in tasks:
         if failures := _failed(task, judge):
             known = _original_failures(replace(task, library="eonlib"), judge)
@@ -143,10 +144,10 @@ _original_failures = cache(_failed)  # the original does not change
 
 
 def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts and tasks that can detect a mutant, cheapest first.
+    """Hosts and tasks that can detect a mutant, beginning with the cheapest.
 
-    The stages are text and nodes, surface shaders, pictures of documents, OSL closures, and Cycles,
-    in this order. Each picture and each task of Cycles is a separate stage.
+    The order is text and nodes, surface shaders, pictures of documents, OSL closures, and Cycles.
+    Each picture and each task of Cycles is a separate stage.
     """
     tasks = make_plan((), ["gl"], [path]).tasks
     if mutant.file.startswith(NOT_ON_GL):
@@ -176,13 +177,13 @@ DOCUMENTS = (
     "genosl/cycles/eonlib_cycles_impl.xml",
 )
 INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
-# Pairs of a target and a host that runs shaders for the target, cheapest host first.
+# Each target with a host that runs shaders for the target, beginning with the cheapest host.
 HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
-LATE = ("inputs", "transmitted_inputs", "integral", "energy")  # the slowest checks
+LATE = ("inputs", "transmitted_inputs", "integral", "energy")
 
 
 def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
-    """Target and title of each subject that a mutant changes."""
+    """Target and title of each subject whose code a mutant changes."""
     texts = mutant.texts()
     changed = {LOBE if each.startswith(operators.ENVIRONMENT) else each for each in texts}
     entries: set[tuple[str, ...]] = set()
@@ -196,7 +197,7 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
 
 
 def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts, cheapest first, each with the tasks that check the subjects that a mutant changes."""
+    """Hosts, beginning with the cheapest, with the tasks whose subjects a mutant changes."""
     changed = changed_nodes(mutant)
     for target, host in HOSTS:
         titles = {title for each, title in changed if each == target}
@@ -206,11 +207,10 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 
 @cache
 def _tasks(host: str) -> tuple[Task, ...]:
-    """All tasks of a host with eonlib, grouped by subject, because each subject compiles one
-    shader.
+    """All tasks of a host with eonlib, grouped by subject to compile each shader once.
 
-    Subjects are in reverse order, so that transmission, which runs most of the code, comes early.
-    Films come last, because failures of films take longest to diagnose.
+    The order of subjects is reversed, because the last subject, transmission, runs most of the
+    code. Films come last, because failures of films take longest to diagnose.
     """
     places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
@@ -229,7 +229,7 @@ def _titles(nodedef: str) -> frozenset[str]:
         return frozenset()
     kind, node = definition.getType(), definition.getNodeString()
     titles = {spec.title for spec in PBRLIB if spec.node == node}
-    for word in ("EDF", "VDF"):  # a node such as `add` exists for several types
+    for word in ("EDF", "VDF"):  # nodes such as `add` have several types
         titles = {title for title in titles if (word in title.upper()) == (word == kind)}
     if kind == "BSDF":
         combined = (spec for spec in PBRLIB if spec in COMBINED_SPECS)
@@ -239,7 +239,7 @@ def _titles(nodedef: str) -> frozenset[str]:
 
 @cache
 def _sources(file: str) -> frozenset[str]:
-    """Paths, relative to the root, of a source and of all files that are included, recursively."""
+    """Paths of a source and of all files that the source includes, directly or indirectly."""
     path = ROOT / file
     if not path.is_file():
         return frozenset()
@@ -267,14 +267,13 @@ def _entries(document: str, text: str) -> set[tuple[str, ...]]:
 MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
-WIDTH = {"COLUMNS": "200"}  # wide enough for whole messages of pytest
-# Mutated copies of the repository do not contain Blender.
+WIDTH = {"COLUMNS": "200"}  # pytest cuts off messages at the width
 BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
 
 def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]:
-    """Verdict of tests on a mutated copy of mxeon and eonlib, with the first test that fails."""
+    """Verdict of tests on a mutated copy of mxeon and eonlib, and the first failed test."""
     with TemporaryDirectory(prefix="mxeon-mutant-") as base:
         write_wrong(mutant, base, "python", *FOLDERS)
         for tests in steps:
@@ -286,7 +285,7 @@ def by_tests(mutant: Mutant, steps: Sequence[tuple[str, ...]]) -> dict[str, Any]
 
 
 def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
-    """Name and message of the first test that fails with the package at `package`, or None."""
+    """Name and message of the first test that fails with `package` in PYTHONPATH, or None."""
     command = [sys.executable, "-m", "pytest", *OPTIONS, *tests]
     env = BLENDER | os.environ | WIDTH | {"PYTHONPATH": package}
     ended = subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True, check=False)

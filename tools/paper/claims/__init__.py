@@ -22,15 +22,15 @@ The paper's formulas of values and albedos, and of rho for an albedo, are not am
 with 50 digits of the printed equations. They also test that densities integrate to 1 and mean weights are 1.
 """
 
-# Result of a measurement: a sentence for the page, and values that are compared with the limits.
+# Result of a measurement: a sentence for the page, and values to compare with the limits.
 Measured = tuple[str, ArrayLike]
 Measure = Callable[[], Measured]
-ROUNDING = 1e-12  # largest difference between two forms of a formula
+ROUNDING = 1e-12  # largest difference between equivalent formulas
 
 
 @dataclass
 class Section:
-    """Claims under one heading. Each function in `rows` measures a claim for a table row."""
+    """Claims under one heading. Each function in `rows` measures a claim."""
 
     heading: str
     rows: list[Callable[[], tuple[str, ...]]] = field(default_factory=list)
@@ -64,7 +64,7 @@ class Section:
 
 
 def verdict(values: ArrayLike, least: float, most: float) -> str:
-    """HOLDS, IN_PART or FAILS if all, some or none of the values lie in [least, most].
+    """HOLDS if all values lie in [least, most], IN_PART if some values do, otherwise FAILS.
 
     >>> verdict([1.0, 3.0], 0.0, 2.0), verdict(float("nan"), 0.0, 2.0)
     ('holds in part', '**fails**')

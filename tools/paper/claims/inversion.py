@@ -9,7 +9,7 @@ from tools.paper.claims import Measured, Section
 COLORS = np.linspace(0.0, 1.0, 401)
 ROUGHNESS = np.linspace(0.0, 1.0, 101)
 STATED = 3e-3
-# A float64 formula counts as failed if the error exceeds a rounding of float32.
+# Float64 formulas with a larger error than a rounding of float32 fail.
 FLOAT32 = 2.0**-24
 SECTION = Section("Appendix A: inversion of the albedo")
 claim = SECTION.claim
@@ -43,7 +43,7 @@ def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
     least=FLOAT32,
 )
 def printed_root() -> Measured:
-    """Errors of the published Eq. (30) at low roughness. Only the last error must be large."""
+    """Errors of the published Eq. (30) at low roughness. By the claim, the last error is large."""
     errors = {}
     for r in (1e-3, 1e-6, 1e-9):
         A, B = _quadratic(r)

@@ -44,7 +44,7 @@ def qon_gain() -> Measured:
     least=ROUNDING,
 )
 def full_gain() -> Measured:
-    """Largest albedos minus 1 for low sigmas, and 1 minus the largest albedos for high sigmas."""
+    """For low sigmas, largest albedos minus 1. For high sigmas, 1 minus largest albedos."""
     mu = np.array([1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2])
     albedos = np.array(
         [albedo_dir_quadrature(diffuse.oren_nayar_brdf, mu, 1.0, s).max() for s in SIGMA]
@@ -83,7 +83,7 @@ def rms_to_full() -> Measured:
     most=0.1,
 )
 def kink() -> Measured:
-    """Jumps of df/ds at s = 0 for the largest roughness, if wo and wi have the same polar angle."""
+    """Jumps of df/ds at s = 0 for the largest roughness and for equal polar angles of wo and wi."""
     parts, ratios = [], []
     for degrees in (5, 25, 60):
         mu = np.cos(np.radians(degrees))
@@ -131,7 +131,7 @@ def fon_loses() -> Measured:
 
 
 def listing_1_albedo(mu: np.ndarray) -> np.ndarray:
-    """The exact albedo at roughness 1 by the operations of Listing 1 in float32."""
+    """The exact albedo at roughness 1, computed in float32 with the operations of Listing 1."""
     one, third = np.float32(1.0), np.float32(2.0 / 3.0)
     S = np.sqrt(one - mu * mu)
     with np.errstate(divide="ignore", invalid="ignore"):

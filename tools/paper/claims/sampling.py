@@ -18,7 +18,7 @@ def at(degrees: float) -> float:
 
 
 def over_angles(name: str, roughness: float) -> np.ndarray:
-    """Mean, variance and largest value of a sampler's weight at each of DEGREES, (3, angles)."""
+    """Mean, variance and maximum of a sampler's weight at all DEGREES, (3, angles)."""
     return np.transpose([moments(name, at(degrees), roughness) for degrees in DEGREES])
 
 
@@ -35,10 +35,10 @@ def cosine_variance() -> Measured:
     "Fig. 11", "the variance of cosine sampling has a peak", "step over the step before", most=0.9
 )
 def cosine_diverges() -> Measured:
-    """Growth of the variance as mu falls by a factor of 10, divided by the previous growth.
+    """Growth of the variance from mu = 1e-4 to 1e-5, divided by the growth from 1e-3 to 1e-4.
 
-    If the variance had a peak, the growth would decrease before the peak. Instead, each factor of
-    10 adds (A r)^2 / 2 ln 10.
+    Before a peak, the growth would decrease. Instead, each factor of 10 in mu adds (A r)^2 / 2 ln
+    10 to the variance.
     """
     variances = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
     first, second = np.diff(variances)
@@ -70,7 +70,7 @@ def wasted() -> Measured:
 
 @claim("Listing 3", "no sample below the horizon", "z", least=0.0)
 def side_of_the_lune() -> Measured:
-    """Lowest sample of Listing 3 for wo near the normal, where the fitted d is positive."""
+    """Lowest direction by Listing 3 for wo near the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
     d = sampling.ltc_md(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
@@ -100,7 +100,7 @@ def mixture_weight() -> Measured:
     least=100.0,
 )
 def gain() -> Measured:
-    """Variance of cosine sampling divided by the variance of the mixture."""
+    """Variance of cosine sampling, divided by the variance of CLTC plus uniform."""
     parts, ratios = [], []
     for degrees in (60.0, 85.0, 89.0, 89.9, 90.0 - np.degrees(1e-6)):
         cosine, mixture = (
@@ -118,7 +118,7 @@ def gain() -> Measured:
     most=1.0,
 )
 def low_roughness() -> Measured:
-    """Variance of the mixture divided by the variance of cosine sampling, averaged over wo."""
+    """Variance of CLTC plus uniform, relative to cosine sampling and averaged over wo."""
     weight = np.sin(np.radians(2.0 * DEGREES))
     parts, ratios = [], []
     for r in (0.02, 0.05, 0.1, 0.2):
@@ -132,7 +132,7 @@ def low_roughness() -> Measured:
 
 @claim("Listing 4", "defined for u1 in [0, 1] and r in [0, 1]", "u1 / P_u", least=0.0, most=1.0)
 def no_number() -> Measured:
-    """If u1 <= P_u, Listing 4 divides u1 by P_u. If u1 and P_u are 0, the quotient is NaN."""
+    """If u1 <= P_u, Listing 4 divides u1 by P_u, so u1 = P_u = 0 results in NaN."""
     with np.errstate(invalid="ignore"):
         u1 = np.float64(0.0) / np.float64(0.0**0.1)
     return f"at r = 0, u1 = 0: P_u = 0, u1 / P_u = {u1}", u1

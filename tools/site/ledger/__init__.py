@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements and patches for the ledger, which has a page for each upstream defect.
+"""Measurements and patches for the ledger of defects in MaterialX and renderers.
 
-The pages are in `docs/upstream`, with the latest results in `measured.json`. Repairs are commits in
-`patches/`, and the message of a patch names the page. The site adds figures to the pages.
+Each defect has a page in `docs/upstream`, with the latest results in `measured.json`. Repairs are
+commits in `patches/`, whose messages name the page.
 
     python -m tools.site.ledger.measure [HOST ...]  repeats the measurements
     python -m tools.site.ledger.pictures            draws the pages' pictures
@@ -28,17 +28,17 @@ MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
-    """For each page, the measured rows of the table, the host, the versions and the diagnosis."""
+    """The stored measurements by page: rows of the table, host, versions and diagnosis."""
     return dict(json.loads(MEASURED.read_text(encoding="utf-8")))
 
 
 def write_measured(found: dict[str, Any]) -> None:
-    """Write the measurements to `measured.json`, with the patches' shortest changes."""
+    """Write measurements and the shortest changes of patches to `measured.json`."""
     write_text(MEASURED, dumped(dict(sorted(with_patches(found).items())), 1) + "\n")
 
 
 def dumped(found: Any, depth: int) -> str:
-    """JSON text in which objects nested less deeply than `depth` have one line for each entry."""
+    """JSON text with one line for each entry, down to the nesting depth `depth`."""
     if depth == 0 or not isinstance(found, dict):
         return json.dumps(found)
     lines = (f"{json.dumps(name)}: {dumped(each, depth - 1)}" for name, each in found.items())
@@ -46,7 +46,7 @@ def dumped(found: Any, depth: int) -> str:
 
 
 def with_patches(found: dict[str, Any]) -> dict[str, Any]:
-    """Measurements, plus each patch's shortest change, by which patched copies are recognized."""
+    """Measurements with each patch's shortest change, which identifies patched MaterialX."""
     return found | {
         page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
         for page, path in patches("materialx").items()
@@ -59,7 +59,7 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
     for file, part in re.findall(whole_file, patch, re.MULTILINE):
         for run in re.findall(r"^(?: .*\n)?(?:[+-].*\n)+(?: .*\n)?", part, re.MULTILINE):
             lines = run.splitlines(keepends=True)
-            if {line[0] for line in lines} >= {"+", "-"}:  # a replacement needs no context
+            if {line[0] for line in lines} >= {"+", "-"}:
                 lines = [line for line in lines if line[0] != " "]
             old, new = ("".join(line[1:] for line in lines if line[0] != sign) for sign in "+-")
             changes.append((file, old, new))
@@ -76,7 +76,7 @@ def figure(result: Result) -> str:
 
 @cache
 def patches(project: str) -> dict[str, Path]:
-    """Paths of a project's patches by page, in the order of the patch numbers."""
+    """Paths of a project's patches by page, ordered by number."""
     found = {}
     for path in sorted((PATCHES / project).glob("*.patch")):
         [page] = re.findall(r"docs/upstream/(\w+)\.md", path.read_text(encoding="utf-8"))
@@ -91,12 +91,12 @@ def patches_of(page: str) -> list[Path]:
 
 
 def own_diff(page: str) -> str:
-    """The diff in the text of a page, or "" if the repair of the defect is a patch."""
+    """The diff in the text of a page, or "" if the page has none."""
     return "".join(re.findall(r"(?ms)^```diff\n(.*?)^```", issues()[page].text))
 
 
 def needed(page: str) -> set[str]:
-    """A page, and recursively all pages with patches that the page's patch requires."""
+    """A page, and all pages whose patches the page's patch requires, directly or indirectly."""
     found = {page}
     while more := {each for name in found for each in issues()[name].needs} - found:
         found |= more
@@ -104,14 +104,14 @@ def needed(page: str) -> set[str]:
 
 
 def linked(source: Path, target: Path) -> Path:
-    """Create a folder of links to the files of an installed package."""
+    """Copy a folder as links to the original files."""
     ignored = shutil.ignore_patterns("__pycache__", "*.d.ts", "*.map")
     shutil.copytree(source, target, copy_function=os.symlink, ignore=ignored)
     return target
 
 
 def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
-    """Apply patches, given as paths or diffs, to a folder of files or links. Returns the folder.
+    """Apply patches, given as paths or diffs, to a folder of files or links, and return the folder.
 
     `strip` is the number of leading path components that are dropped.
     """
@@ -124,7 +124,7 @@ def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
         for name in re.findall(r"^--- (\S+)$", diff.decode(), re.MULTILINE):
             path = folder.joinpath(*name.split("/")[strip:])
             data = path.read_bytes()
-            path.unlink()  # `path` may be a link
+            path.unlink()
             path.write_bytes(data)
         subprocess.run(command, cwd=folder, input=diff, env=env, check=True, capture_output=True)
     return folder

@@ -20,15 +20,15 @@ from mxeon.shaders.document.policy import DEFAULT
 from tools.site.ledger import figure, measured, write_measured
 
 CHECKED = [each for each in issues().values() if each.rows]  # issues with a table of checks
-# Renderers that have nodes of their own, which do not use MaterialX.
+# Renderers whose own nodes do not use MaterialX.
 OWN_NODES = ("three", "babylon", "shadewire", "three-gpu-pathtracer")
 
 
 def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple[list[Result], str]:
     """Results of the checks in `rows` on a host or "source", and a text with device and versions.
 
-    By default, `rows` are all rows in tables of pages about `host` and `library`. The library STOCK
-    includes a renderer's own nodes.
+    By default, `rows` are all rows of pages about `host` and `library`. STOCK includes a renderer's
+    own nodes.
 
     Raises
     ------
@@ -50,12 +50,12 @@ def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple
 
 
 def shows(issue: Issue, host: str, library: str) -> bool:
-    """Whether the table on the page of an issue is measured on `host` with `library`."""
+    """Whether an issue is measured on `host` with `library`."""
     return issue.host == host and (issue.library == EONLIB) == (library == EONLIB)
 
 
 def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any]:
-    """Measurements for the page of an issue, taken from `results` for the rows of the page's table."""
+    """Measurements in `results` for the page of an issue."""
     by_row = {(each.check, each.subject): each for each in results}
     judged = [by_row[row] for row in issue.rows]
     rows = [
@@ -69,11 +69,11 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     nearest = [title for _, title in ranking if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
-    return dict(json.loads(json.dumps(measures)))  # tuples become lists, as in a file
+    return dict(json.loads(json.dumps(measures)))  # tuples become lists, as after reading a file
 
 
 def fields(cause: Cause) -> dict[str, Any]:
-    """The fields of a cause that are not empty and do not depend on the driver."""
+    """The fields of a cause, except empty fields and fields that depend on the driver."""
     found = asdict(cause) | {"kind": cause.kind.value}
     if cause.region:
         region = found["region"].items()

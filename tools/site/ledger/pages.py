@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Adds a list of pages, measurements, diffs of patches and versions to the ledger on the site."""
+"""Adds measurements, patches, versions and a list of pages to the ledger on the site."""
 
 import json
 import re
@@ -14,9 +14,9 @@ from mxeon.conformance.results.quantities import Quantity
 from tools.site.ledger import ROOT, measured, patches, patches_of
 
 VERSIONS = Path(__file__).with_name("versions.json")
-PLACEHOLDER = re.compile(r"<!-- patches (\S+) -->")  # a table of patches replaces this comment
-LINES = 20  # largest number of changed lines in a diff on a page
-# Headings of the groups of pages in the index, by name of the group.
+PLACEHOLDER = re.compile(r"<!-- patches (\S+) -->")  # replaced by a table of patches
+LINES = 20  # maximum number of changed lines in a diff
+# Headings in the index, by group of pages.
 GROUPS = {
     "rough_diffuse": "`oren_nayar_diffuse_bsdf`",
     "diffuse": "`burley_diffuse_bsdf`, `subsurface_bsdf`, `translucent_bsdf`",
@@ -53,7 +53,7 @@ def entries() -> str:
 
 
 def filled(name: str, text: str) -> str:
-    """Markdown of a ledger page or of the index README, with the text that the site adds."""
+    """Complete Markdown of a ledger page or of the index README."""
     if name == "README":
         text = text.replace("<!-- entries -->", entries())
         return PLACEHOLDER.sub(lambda found: patch_table(found[1]), text)
@@ -71,7 +71,7 @@ def filled(name: str, text: str) -> str:
 
 
 def table(issue: Issue) -> str:
-    """Markdown table of a page's measurements, and a diagnosis of the first row."""
+    """Markdown table of a page's measurements, with a diagnosis of the first row."""
     if not issue.rows or not issue.cause:
         return ""
     found = measured()[issue.page]
@@ -92,7 +92,7 @@ def table(issue: Issue) -> str:
 
 
 def short_diff(patch: Path) -> tuple[str, int]:
-    """The first LINES changed lines of a patch, and the number of omitted changed lines."""
+    """The first LINES changed lines of a patch, and the number of further changed lines."""
     lines: list[str] = []
     count, follows = 0, False
     for line in patch.read_text(encoding="utf-8").split("\n---\n", 1)[1].splitlines():
@@ -110,7 +110,7 @@ def short_diff(patch: Path) -> tuple[str, int]:
 
 
 def outcome(issue: Issue) -> str:
-    """Sentence on the checks that pass, and that still fail, after a page's patch is applied."""
+    """Sentence on which checks pass and which checks fail after a page's patch is applied."""
     checks: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     for check, subject in issue.repaired:
         checks[subject, "passes", "pass"].append(f"`{check}`")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the pictures of the ledger: `python -m tools.site.ledger.pictures`.
 
-Each picture has three parts, rendered on gl: a page's document with the installed MaterialX, the
-document with the page's patch and all required patches, and the difference.
+Each picture has three parts: a page's document rendered by gl with the installed MaterialX, the
+same document with a repaired MaterialX, and the difference.
 """
 
 import sys
@@ -70,7 +70,7 @@ def layered(*nodes: str) -> str:
     return document_text("".join((BASE, *nodes)) + SURFACE)
 
 
-# Scene and document for the picture of each page, as described in the text of the page.
+# Scene and document for the picture of each page.
 PAGES = {
     "genglsl_clamped_dot": ("back", material_text("oren_nayar_diffuse_bsdf", ROUGH)),
     "genglsl_film_half": ("side", material_text("generalized_schlick_bsdf", FILM)),
@@ -117,7 +117,7 @@ def draw(folder: str, *pages: str) -> None:
 
 
 def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
-    """A page's picture with stock MaterialX, or with patched MaterialX if `repair` is true."""
+    """A page's picture with stock MaterialX, or with repaired MaterialX if `repair` is true."""
     package = linked(Path(mx.__file__).parent, folder / "MaterialX")
     if repair:
         names = needed(page)
@@ -129,7 +129,7 @@ def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
 
 
 def main() -> None:
-    """Write a picture for each page: stock, repaired and difference side by side."""
+    """Write a picture for each page."""
     mask = visible(SIZE, "sphere").mask[..., None]
     for page, (scene, _) in PAGES.items():
         with TemporaryDirectory(prefix="mxeon-picture-") as base:
@@ -137,7 +137,7 @@ def main() -> None:
                 drawn(page, Path(base, str(repair)), repair) for repair in (False, True)
             )
         change = np.where(mask, np.abs(stock - repaired), 0.0)
-        # Half the exposure makes excess light visible in a white environment.
+        # In a white environment, excess light is only visible at half the exposure.
         gain = 0.5 if scene == "furnace" else 1.0
         images = gain * stock, gain * repaired, change / change.max()
         a, b, c = (np.where(mask, srgb_encoded(each), np.uint8(BACKGROUND)) for each in images)

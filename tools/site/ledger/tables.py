@@ -14,14 +14,14 @@ import MaterialX as mx
 
 from mxeon.shaders.library import load_library
 
-GROUP = "pbr"  # nodegroup of the specification's nodes; other nodegroups may reuse a name
-NONE = ("", "__zero__", "__empty__")  # texts that mean that a default is missing
+GROUP = "pbr"  # nodegroup of the nodes in the specification
+NONE = ("", "__zero__", "__empty__")  # default values that stand for no default
 KEYS = ("type", "default", "accepted values")  # compared columns
-Port = dict[str, object]  # types, default and accepted values of a port, by KEYS
+Port = dict[str, object]
 
 
 def printed(text: str) -> dict[str, dict[str, Port]]:
-    """Ports by node and name, from all tables whose first column is Port."""
+    """Ports by node and name, read from all tables whose first column is Port."""
     nodes: dict[str, dict[str, Port]] = {}
     node, columns = "", []
     for line in text.splitlines():
@@ -60,14 +60,14 @@ def defined(node: str) -> dict[str, Port]:
 
 
 def interval(least: str, most: str) -> str:
-    """An interval of numbers in the specification's notation, or "" if both ends are missing."""
+    """An interval in the specification's notation, or "" if both ends are missing."""
     if not least and not most:
         return ""
     return f"{f'[{least}' if least else '(-inf'}, {f'{most}]' if most else 'inf)'}"
 
 
 def value(text: str) -> object:
-    """A default as a text or a tuple of numbers. Equal components are reduced to one number."""
+    """A default as a text or a tuple of numbers. Equal numbers are reduced to one number."""
     try:
         numbers = tuple(map(float, text.split(",")))
     except ValueError:
@@ -76,7 +76,7 @@ def value(text: str) -> object:
 
 
 def accepted(text: str) -> object:
-    """Accepted values: the brackets and ends of a range, or a set of names."""
+    """Accepted values: a range as brackets and ends, or a set of names."""
     text = text.replace(" ", "").replace("∞", "inf")
     if text.startswith(("[", "(")):
         return text[0], text[-1], *map(value, text[1:-1].split(","))
