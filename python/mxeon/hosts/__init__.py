@@ -104,7 +104,7 @@ HOSTS = (
         scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
-    # The row has no WHITE_LIGHT, because Storm sums over other directions than the other hosts do.
+    # WHITE_LIGHT is missing, because Storm integrates an environment with its own directions.
     Row(
         "storm",
         "glsl",
@@ -114,8 +114,8 @@ HOSTS = (
         rounding=2.0**-10,  # pixels are truncated to half floats
     ),
     Row("shadewire", "glsl", "functions", scenes=(SIDE, BACK)),
-    # The row has no WHITE_LIGHT, because Cycles samples an environment with noise. No closure of
-    # Cycles agrees with the model QON for s < 0.
+    # WHITE_LIGHT is missing, because Cycles renders an environment with noise. No closure of Cycles
+    # agrees with QON for s < 0.
     Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
     Row("testrender", "osl", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),

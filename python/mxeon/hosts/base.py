@@ -165,7 +165,7 @@ class Host(Engine):
         self.methods = UNCHOSEN if self.fixed else methods
 
     def table(self, shader: Shader) -> dict[str, Array]:
-        """Texels of a shader's albedo table, by name of a sampler that clamps and interpolates."""
+        """A shader's albedo table by sampler name. The sampler must clamp and interpolate."""
         return {TABLE: self._tables(shader.table)} if shader.table else {}
 
     @cached_property
@@ -210,13 +210,12 @@ class Host(Engine):
         - `inputs`: Values of node inputs by name, (N, ...) or constant. The input "occlusion" is 1
           by default, and "normal" is the surface's normal by default.
         - `branch`: "direct", "environment", "transmission", "emission", "graph" or "lit". The value
-          of "graph" is the color of the uniform EDF, which does not depend on the directions. The
-          value of "lit" is pi times the sum over up to two lights, plus the value of an
-          environment, in one pixel; see `mxeon.hosts.calls.LIT` for the inputs of this branch.
-        - `output`: The "response" is f cos(theta_i) in 1/sr, or for an environment the directional
-          albedo times the irradiance divided by pi. The "throughput" is the share of light from
-          below that passes the BSDF. The "radiance" is what the EDF emits towards `wo`, in any
-          branch.
+          of "graph" is the color of the uniform EDF. The value of "lit" is pi times the sum over up
+          to two lights, plus the value of an environment; see `mxeon.hosts.calls.LIT` for the
+          inputs of this branch.
+        - `output`: The "response" is f cos(theta_i) in 1/sr. In the branch "environment", the
+          response is the directional albedo times irradiance / pi. The "throughput" is the fraction
+          of light from below that passes the BSDF. The "radiance" is emitted by the EDF.
         - `irradiance`: Irradiance of the environment divided by pi for every normal, (rows,
           columns, 3). This latitude-longitude map has row 0 at +y and its middle at +z, and is also
           used for lookups of radiance. None means a uniform environment of radiance 1.

@@ -63,8 +63,8 @@ def prelude(text: str, end: int) -> Prelude | None:
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# Closure type of a call, and first step of the evaluation loop, for each branch. Only in the first
-# two branches, shaders also call BSDFs that do not transmit light.
+# Closure type of a BSDF's call, and first step of the evaluation loop. Shaders call BSDFs that do
+# not transmit light only in the first two branches.
 CLOSURES = {
     "direct": ("CLOSURE_TYPE_REFLECTION", 1),
     "environment": ("CLOSURE_TYPE_INDIRECT", 2),
@@ -98,11 +98,11 @@ for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxe
 """
 OUTPUTS = ("response", "throughput", "radiance")  # only EDFs have a radiance
 NORMAL, TANGENT = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
-SURFACE = "surface_normal"  # key of the geometric normal; a node's input is "normal"
+SURFACE = "surface_normal"  # the geometric normal; "normal" is the shading normal
 NO_POSITION = (0.0, 0.0, 1e31)  # the statement POSITION replaces this placeholder
 POSITION = "P = P.z < 1e30 ? P : {};"
 FILES = ("filename", "string")  # types of inputs that an evaluation does not set
-# Scale and offset of an image that fills its whole texture, by suffix of the variable's name.
+# An image fills its texture if these scales and offsets are set. Keys end the variables' names.
 PLACED = {"_uv_scale": (1.0, 1.0), "_uv_offset": (0.0, 0.0)}
 # Matches a macro that converts an integer to a boolean, because WGSL has no boolean uniforms.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
@@ -213,7 +213,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
 
 
 def _placed(words: Iterable[str]) -> Arguments:
-    """Values of the variables, among `words`, that scale and shift an image in a texture."""
+    """Default values of those `words` that name the scale or the offset of an image."""
     return {
         each: ("vector2", value)
         for each in words

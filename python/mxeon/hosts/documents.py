@@ -28,27 +28,26 @@ from mxeon.shaders.scene import Scene, sphere
 
 SPREAD = 1.0 / 64.0  # factor that reduces the change of texture coordinates in a quad
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-# Lower bound of the cosine of normal and view in the slope of a quad. A tangent plane at the rim
-# would be so steep that the quad would leave the frame.
+# Quads at the rim are less steep than the tangent plane, which would extend beyond the frame. The
+# slope is computed with a cosine (between normal and view) of at least this value.
 STEEPEST = 0.05
 
 
 def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArray[np.float32]]:
     """Vertices of a quad for each pixel of a picture of `size` x `size` pixels.
 
-    Four vertices in counterclockwise order form a quad, which has one normal. The quad is exact at
-    a point of the sphere, `place` half widths from the quad's center. The quad lies in the tangent
-    plane and is as wide as a pixel, so derivatives of positions are equal to the derivatives on the
-    sphere. Derivatives of "texcoord" have the same directions but are smaller, so textures are read
-    at full size. Row 0, at the top, comes first.
+    Each quad is as wide as a pixel and lies in the sphere's tangent plane at one point, so that
+    positions have the same derivatives as on the sphere. `place` is the offset of this point from
+    the quad's center, in half widths. Texture coordinates vary less than on the sphere, so textures
+    are read at full size. Quads are ordered by row from the top, vertices counterclockwise.
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]
-    # Offsets of corners from the exact point in x and y, and in z along the tangent plane.
+    # Each corner lies in the tangent plane, at a given offset in x and y from the exact point.
     offset = np.broadcast_to((CORNERS - place) / size, (len(normal), 4, 2))
     rise = -(normal[..., :2] * offset).sum(axis=-1) / np.maximum(normal[..., 2], STEEPEST)
     position = normal + np.concatenate([offset, rise[..., np.newaxis]], axis=-1)
-    # Texture coordinates: longitude and latitude of the point, plus linear terms in the offset.
+    # Texture coordinates are longitude and latitude, linearized around the exact point.
     x, y, z = np.moveaxis(normal, -1, 0)
     dx, dy, dz = SPREAD * np.moveaxis(position - normal, -1, 0)
     squared = x * x + z * z
@@ -65,8 +64,8 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     }
 
 
-# Width of a quad in pixels, and position in the quad of the pixel that is read, for materials that
-# need 2 x 2 pixels in one triangle. The pixel lies right of the diagonal, below the center.
+# If a triangle must cover a block of 2 x 2 pixels, each quad has 4 x 4 pixels. Only one pixel is
+# read, at the offset PLACE from the center in half widths.
 PIXEL_BLOCK, PLACE = 4, (0.25, -0.25)
 PICTURES = 64  # maximum number of cached pictures, which the checks of a node share
 
@@ -94,7 +93,7 @@ class DocumentHost(base.Host):
         return base.Identity(self.name, str(self.worker.version), self.worker.device)
 
     def picture(self, shader: Shader, scene: Scene) -> base.Array:
-        """Picture of the sphere, for which the worker process generates the shader again."""
+        """Picture of the sphere. The worker process generates the shader again."""
         self.refuse_paths(scene)
         self.refuse_shape(scene)
         if isinstance(scene.environment, (str, Path)):

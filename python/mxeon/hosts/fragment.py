@@ -41,11 +41,11 @@ LAYER = (
 COMPONENTS = {"float": 1, "boolean": 1, "integer": 1, "vector2": 2}
 WIDTH = 1024  # maximum number of pixels in a row of a frame
 PART = 1 << 15  # maximum number of elements that one frame evaluates
-# Columns and rows that are added to argument textures, whose sizes are then odd. Mesa would compile
-# a program again whenever a size changed from a power of two to another number, or back.
+# One column and one row are added to argument textures, so that no size is a power of two. Mesa
+# compiles a program again whenever a texture's size changes from a power of two to another size.
 ODD = 1
 
-Columns: TypeAlias = dict[str, NDArray[np.float32]]  # rows of 1 to 3 values, or layers of rows
+Columns: TypeAlias = dict[str, NDArray[np.float32]]  # (rows, 1 to 3) or (layers, rows, 3)
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ DIALECTS["wgsl"] = replace(DIALECTS["vulkan"], prelude="")  # textures are alrea
 
 
 def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
-    """Text of a pixel stage that evaluates a shader's BSDF, and texels of arguments by sampler."""
+    """Pixel stage that evaluates a shader's BSDF. Also returns the texels of each sampler."""
     shader = query.shader
     dialect, call = DIALECTS[shader.target], bsdf_call(query)
     before, output = _before_main(shader.stages["pixel"], dialect)
@@ -119,7 +119,7 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
 
 @lru_cache(maxsize=16)
 def _before_main(pixel: str, dialect: Dialect) -> tuple[str, str]:
-    """Text before the `main` of an evaluation, and the name of the generated text's output."""
+    """The text that precedes a new `main`, and the name of the output of the generated text."""
     version, text = pixel.split("\n", 1)
     macros = "".join(f"#undef {name}\n" for name in ["main", *booleans(text)])
     before = f"{version}\n{dialect.prelude}{renamed(text)}{macros}"
@@ -135,7 +135,7 @@ def renamed(text: str) -> str:
 def function_evaluation(
     source: str, function: str, arguments: Sequence[ArrayLike], target: str
 ) -> tuple[str, Columns]:
-    """Text of a pixel stage that evaluates a function of `source`, and texels of arguments."""
+    """Pixel stage that calls a function of `source`. Also returns the texels of each sampler."""
     values, call = functions.call(source, function, arguments)
     return evaluation(source, values, [f"mxeon_out = vec4(vec3({call}), 1.0);"], target)
 
@@ -143,7 +143,7 @@ def function_evaluation(
 def evaluation(
     source: str, arguments: Mapping[str, tuple[str, ArrayLike]], body: Sequence[str], target: str
 ) -> tuple[str, Columns]:
-    """Text of a pixel stage that executes the statements of `body`, and texels of arguments."""
+    """Pixel stage that executes the statements `body`. Also returns the texels of each sampler."""
     dialect = DIALECTS[target]
     main, texels = _main(dialect, arguments, body)
     return dialect.version + dialect.prelude + dialect.output + source + main, texels
@@ -172,10 +172,10 @@ def parts(arguments: Mapping[str, Array]) -> Iterator[dict[str, Array]]:
 
 
 def texels(values: Array, size: tuple[int, int], margin: int = 0) -> NDArray[np.float32]:
-    """Texels of a frame of `size` that holds values, or of several frames that hold layers.
+    """Values as texels of a texture. An array of three dimensions becomes several layers.
 
-    There is a row of values per element, or one constant row. A margin adds columns and rows to
-    each layer.
+    A single row of `values` is a constant and fills the texture. `margin` columns and rows are
+    added to each layer.
     """
     width, height = size
     layers = values[np.newaxis] if values.ndim == 2 else values
@@ -206,7 +206,7 @@ def _main(
     body: Sequence[str],
     most: int = MOST,
 ) -> tuple[str, Columns]:
-    """Text of a `main` that reads arguments and executes `body`, and the texels of arguments."""
+    """A `main` that reads arguments and executes `body`. Also returns the samplers' texels."""
     rows = columns(arguments)
     if len(rows) <= most:
         values = {f"mxeon_{name}": each for name, each in rows.items()}

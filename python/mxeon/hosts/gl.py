@@ -177,8 +177,8 @@ class GlHost(FragmentHost):
     ) -> dict[str, moderngl.Texture | moderngl.TextureArray]:
         """Textures for the samplers of a program. Samplers with the same array share a texture.
 
-        An environment map is clamped at the poles. The uniform map of a check repeats, because
-        clamping would turn a NaN coordinate into a number and hide the NaN from the check.
+        Environment maps are clamped at the poles. Uniform maps repeat, because clamping would turn
+        a NaN coordinate into a number and hide the NaN from a check.
         """
         created: dict[tuple[int, bool], moderngl.Texture] = {}
         textures: dict[str, moderngl.Texture | moderngl.TextureArray] = {}

@@ -33,9 +33,9 @@ class PairHost(base.Host):
     def _values(self, query: Query) -> Array:
         """Values of a shader in a renderer; see `mxeon.hosts.base.Host`.
 
-        The throughput is the visible part of white emission below the surface. The environment also
-        lights the surface from below, and is sampled with noise. Raises InputError if a pair under
-        the lamp is not `visible`.
+        The throughput is measured with white emission below the surface. The environment is sampled
+        with noise and also lights the surface from below. Raises InputError if the lamp cannot
+        light a pair.
         """
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         through = output == "throughput"
@@ -66,7 +66,7 @@ class PairHost(base.Host):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """Radiance of pairs of directions, (N, 3).
+        """Radiance towards wo for each pair of directions, (N, 3).
 
         `last` is the last OSL statement of the shader, with {output} for the output's name. `light`
         is LAMP (irradiance 1 on a surface that faces the lamp), SKY (uniform radiance 1) or DARK.
@@ -78,8 +78,8 @@ Vectors = NDArray[np.float64]
 # Least sine of the angle between wo and wi. If the sine is smaller, the light is in view or the
 # point is behind the camera.
 LEAST_SINE = 0.08
-FARTHER = 1.001 * LEAST_SINE  # sine for turned directions, above LEAST_SINE even if rounded
-NO_SINE = 1e-6  # largest sine of directions that are equal up to the rounding of float32
+FARTHER = 1.001 * LEAST_SINE  # sine after turning a direction, with a margin for rounding
+NO_SINE = 1e-6  # directions with a smaller sine between them are equal up to float32 rounding
 CORNERS = ((1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5)))  # an equilateral triangle
 
 
@@ -105,9 +105,8 @@ def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
 
 
 def apart(wo: Array, wi: Array) -> Array:
-    """Directions of light, turned away from the view or its opposite if the angle is too small."""
-    # Component of the light's direction perpendicular to the view. If this component is 0, any
-    # perpendicular vector is used.
+    """The directions wi, turned away from wo and -wo until the sine of the angle is FARTHER."""
+    # Component of wi perpendicular to wo. If the component is 0, any perpendicular vector is used.
     cosine = (wo * wi).sum(axis=1, keepdims=True)
     across = wi - cosine * wo
     sine = np.linalg.norm(across, axis=1, keepdims=True)
@@ -165,7 +164,7 @@ def tilted_triangles(wo: Array, wi: Array, size: int) -> TiltedTriangles:
     cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(np.cross(wo, wi), axis=1)
     z = -np.hypot(DISTANCE + x, y) * cotangent
     points = np.stack([x, y, z], axis=1).astype(np.float32).astype(np.float64)
-    # Frames of the given pairs, and of the pairs in the scene. The first axis is the view.
+    # Rotate each pair so that wo points to the camera and wi points to the light.
     light = np.array([-DISTANCE, 0.0, 0.0]) - points
     world = frames(np.broadcast_to(VIEW, points.shape), unit(light))
     turn = world @ np.swapaxes(frames(wo, wi), 1, 2)

@@ -43,7 +43,7 @@ float tracer_distance(vec3 p)
     return min(max(length(q) - 0.72, -groove), foot);
 }
 
-// Distance to the next surface, from outside or inside; TRACER_FAR if the ray hits nothing.
+// Distance along a ray to the surface, or TRACER_FAR. The ray may start inside the shape.
 float tracer_hit(vec3 origin, vec3 direction)
 {
     float t = 0.0;
@@ -119,9 +119,8 @@ bool tracer_is_shadowed(vec3 position, vec3 normal, vec3 wi)
     return tracer_hit(position + TRACER_OFFSET * sign(dot(wi, normal)) * normal, wi) < TRACER_FAR;
 }
 
-// Light that a point scatters towards wo, from the distant light and from the environment. Paths
-// also reach the environment in directions drawn from the material, so the balance heuristic
-// [Veach1995] weights the two techniques.
+// Direct light from the distant light and the environment, scattered towards wo. Paths also sample
+// the environment by the material, so the balance heuristic [Veach1995] weights both samples.
 vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 {
     vec3 lit = vec3(0.0);
@@ -140,7 +139,7 @@ vec3 tracer_lit(Point p, vec3 normal, vec3 wo, vec3 u)
 
 void main()
 {
-    // Rays to the sphere go through the centers of pixels, where pictures are compared.
+    // Pictures of the sphere are compared at pixel centers, so rays go through the centers.
     vec2 within = tracer_ball ? tracer_random(-1 - tracer_bounces - 1).xy : vec2(0.5);
     vec2 at = (2.0 * (gl_FragCoord.xy - 0.5 + within) - float(tracer_size)) / float(tracer_size);
     vec3 origin = vec3(at, 2.0);

@@ -24,7 +24,7 @@ HEAD = "#version 430\n#define texture(map, at) textureLod(map, at, 0.0)\n"
 
 
 def by_light(sky: Array) -> tuple[Array, Array]:
-    """Indices of texels (256 x 256), repeated in proportion to light, and texels' probabilities."""
+    """Indices of 256 x 256 texels drawn in proportion to light, and each texel's probability."""
     rows, columns, _ = sky.shape
     across = np.sin(np.pi * (np.arange(rows) + 0.5) / rows)[:, np.newaxis]
     share = np.cumsum(sky.mean(axis=-1) * across + 1e-6)

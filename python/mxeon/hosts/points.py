@@ -47,7 +47,7 @@ class Output:
 
 
 def outputs(shader: Shader) -> tuple[Output, ...]:
-    """Outputs of a generated vertex stage, according to the declarations of the pixel stage."""
+    """Outputs of a generated vertex stage, which the pixel stage declares as inputs."""
     text = shader.stages["pixel"]
     if shader.target == "essl":
         found = re.findall(r"^(?:flat )?in (\w+) (\w+);", text, re.MULTILINE)

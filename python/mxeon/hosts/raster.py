@@ -33,11 +33,11 @@ VIEW_DISTANCE = 1e8  # makes normalize(u_viewPosition - positionWorld) the z axi
 # programs again for other environments.
 WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 
-# Number of directions in the sum of a microfacet lobe over the environment. Errors and costs of
-# several numbers are in docs/hosts.md. Only the first mipmap of the environment is read.
+# Microfacet lobes are summed over 1024 directions in evaluations and over 256 in pictures. Only the
+# first mipmap of the environment is read. docs/hosts.md compares numbers of directions.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE_DIRECTIONS = 256
-DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # 1 is enough without an environment
+DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # enough, as nothing is summed
 TRIANGLE = {  # attributes of a triangle's three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
@@ -82,7 +82,7 @@ def images(shader: Shader) -> dict[str, Array]:
 
 
 def environment(irradiance: Array | None) -> dict[str, Array]:
-    """Texels, by sampler, of the environment in `mxeon.hosts.base.Host.evaluate`."""
+    """Texels of an environment for each sampler. The environment is white by default."""
     return dict.fromkeys(
         ("u_envRadiance", "u_envIrradiance"), WHITE_TEXELS if irradiance is None else irradiance
     )
@@ -153,7 +153,7 @@ def bands(size: int, shape: str) -> tuple[Rectangle, ...]:
     return tuple(parts)
 
 
-# Uniforms of an evaluation, which describe a frame of an animation with two lights.
+# An evaluation has two lights, and belongs to frame 24 of an animation.
 FRAME_UNIFORMS = (
     light(SIDE)
     | {"u_numActiveLightSources": 2, "u_frame": 24.0, "u_time": 1.0, TABLE + "Size": TABLE_SIZE}
@@ -162,7 +162,7 @@ FRAME_UNIFORMS = (
 
 
 class Frame(NamedTuple):
-    """The two stages of a program, with rows of arguments, texels and uniforms."""
+    """A program with the data of a frame. Each of the `arguments` has a row per element, or one."""
 
     vertex: str
     pixel: str
@@ -232,7 +232,7 @@ class FragmentHost(base.Host):
         return self._in_parts(Frame(vertex, pixel, texels, environment(None)))
 
     def _in_parts(self, frame: Frame) -> Array:
-        """Values of a pixel stage for any number of elements, in parts to limit texture sizes."""
+        """Values of a pixel stage, evaluated part by part to limit the size of textures."""
         frames = (frame._replace(arguments=part) for part in fragment.parts(frame.arguments))
         return np.concatenate(list(map(self._evaluate, frames)))
 

@@ -54,9 +54,9 @@ vec3 shadewire_host_tangent_world() { return host_tangent; }
 vec3 shadewire_host_bitangent_world() { return cross(host_normal, host_tangent); }
 """
 PROPERTY = "{0} host_{1};\n{0} shadewire_host_geomprop_{1}() {{ return host_{1}; }}\n"
-TYPES = {"float": "float", "boolean": "bool", "integer": "int", "vector2": "vec2"}  # else vec3
+TYPES = {"float": "float", "boolean": "bool", "integer": "int", "vector2": "vec2"}  # others: vec3
 
-Properties: TypeAlias = Mapping[str, tuple[str, str]]  # property: key and type of an input
+Properties: TypeAlias = Mapping[str, tuple[str, str]]  # name -> key and type of an input
 
 
 class ShadewireHost(base.Host):
@@ -134,10 +134,10 @@ class ShadewireHost(base.Host):
 
 
 def _connected(shader: Shader, varying: Collection[str]) -> tuple[str, Properties]:
-    """Text of a shader's document with the library's definitions, and the added properties.
+    """Text of a shader's document, in which the `varying` inputs read geometric properties.
 
-    Each of the `varying` inputs reads a geometric property, except inputs of the surface's frame,
-    which the renderer supplies.
+    Normals and tangents stay unconnected, because the renderer supplies them. Also returns the
+    properties. The document contains the definitions of the library.
     """
     document = mx.createDocument()
     document.copyContentFrom(shader.document)
@@ -167,7 +167,7 @@ def _connected(shader: Shader, varying: Collection[str]) -> tuple[str, Propertie
 def _compiled(document: str, material: str) -> str:
     """The text that shadewire generates for a material of a document, without the first line.
 
-    The name "" means the only material. Raises NotRun if shadewire refuses the document, and warns
+    An empty name selects the only material. Raises NotRun if shadewire refuses the document, and warns
     of a lobe that shadewire leaves black.
     """
     try:

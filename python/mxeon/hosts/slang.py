@@ -242,7 +242,7 @@ class SlangHost(base.Host):
         return texture
 
     def _environment(self, irradiance: Array | None, client: Client) -> dict[str, Resource]:
-        """Uniforms of an environment, white by default."""
+        """Values of the uniforms for an environment, which is white by default."""
         texture = self._white if irradiance is None else self._texture(irradiance)
         tinted = {"tex": texture, "sampler": self._device.create_sampler()}
         matrix = slangpy.float4x4(np.reshape(client.turn, (4, 4)).astype(np.float32))

@@ -61,9 +61,9 @@ def still(host: Host, shader: Shader, scene: Scene) -> Array:
 
 
 def jagged(image: Array, mask: Mask, scene: Scene) -> Iterator[tuple[Array, Array]]:
-    """Rows and columns of pixels that differ from a neighbor, in batches."""
+    """Yield batches of pixels that differ from a neighbor, as (rows, columns)."""
     display, normal = pbr_neutral(image), visible(scene.size, scene.shape).normal
-    differing = mask.copy()  # the shape may end within pixels at the frame's edge
+    differing = mask.copy()  # pixels at the frame's edge may be partly covered
     differing[1:-1, 1:-1] = False
     for down, right in ((0, 1), (1, 0), (1, 1), (1, -1)):
         first = slice(0, -down or None), slice(max(-right, 0), -max(right, 0) or None)

@@ -58,7 +58,7 @@ class TestrenderHost(PairHost):
     def _pixels(
         self, shader: Shader, wo: Array, wi: Array, inputs: Inputs, last: str, light: str
     ) -> NDArray[np.float64]:
-        """Radiance of pairs of directions. With DARK, the scene keeps a lamp that is very faint."""
+        """Radiance towards wo. With DARK, the lamp stays on, because its light is negligible."""
         lit = light != SKY
         wo, wi = (np.asarray(each, np.float64) for each in (wo, wi))
         scene = scenes.pair_scene(wo, wi, points.side(len(wo)))

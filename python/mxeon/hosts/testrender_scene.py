@@ -102,7 +102,7 @@ def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
     x, y = (each.ravel()[: len(wo), np.newaxis] for each in np.meshgrid(axis, -axis))
     ahead = unit(np.array([[CENTER, 0.0, -EYE]]))
     right = unit(np.cross(ahead, [[0.0, 1.0, 0.0]]))
-    width = np.tan(np.radians(FOV) / 2.0)  # half the usual width for this field of view
+    width = np.tan(np.radians(FOV) / 2.0)  # testrender's frame is half as wide as usual
     rays = unit(ahead + width * (x * right + y * np.cross(right, ahead)))
     # Points at which the angle between view and light is as required.
     eye = np.array([0.0, 0.0, EYE])
@@ -111,7 +111,7 @@ def pair_scene(wo: Array, wi: Array, size: int) -> PairScene:
     cotangent = (wo * wi).sum(axis=1) / np.linalg.norm(across, axis=1)
     points = foot + (np.linalg.norm(foot, axis=1) * cotangent)[:, np.newaxis] * rays
     points = points.astype(np.float32).astype(np.float64)
-    # Frames of the given pairs, and of the pairs in the scene. The first axis is the view.
+    # Rotate each pair so that wo points to the camera and wi points to the light.
     local = frames(wo, wi)
     world = frames(-rays, -unit(points))
     return PairScene(world @ np.swapaxes(local, 1, 2), size, rays, points)

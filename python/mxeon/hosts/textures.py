@@ -119,7 +119,7 @@ def irradiance(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def reduced(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
-    """A map reduced by means over blocks, but not to less than RADIANCE_SIZE rows or columns."""
+    """A smaller map of means over blocks of pixels. Sides stay at least RADIANCE_SIZE long."""
     high, wide = (max(1, size // RADIANCE_SIZE) for size in radiance.shape[:2])
     rows, columns = radiance.shape[0] // high, radiance.shape[1] // wide
     blocks = radiance[: rows * high, : columns * wide].reshape(rows, high, columns, wide, -1)
@@ -128,7 +128,7 @@ def reduced(radiance: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def latlong_directions(rows: int, columns: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Directions of a latitude-longitude map's pixels in MaterialX, and relative solid angles."""
+    """Direction and relative solid angle of each pixel in MaterialX's latitude-longitude maps."""
     polar = np.pi * (np.arange(rows) + 0.5) / rows
     azimuth = 2.0 * np.pi * ((np.arange(columns) + 0.5) / columns - 0.5)
     polar, azimuth = np.meshgrid(polar, azimuth, indexing="ij")

@@ -23,9 +23,9 @@ except ImportError:
 
 TRANSLATOR = ("spirv-cross", "--hlsl", "--shader-model", "60")
 COMPILER = ("glslangValidator", "-D", "-V", "--quiet", "-S", "frag", "-e", "main")
-# This option turns off optimization, which inlines every function and takes half a minute for path
-# tracers. Optimization is still necessary if functions take textures, which Vulkan refuses, or if
-# inputs of a stage are unused, which wgpu refuses.
+# The option -Od turns off optimization, which takes half a minute for path tracers. Two kinds of
+# texts still need optimization: Vulkan refuses functions with texture parameters, and wgpu refuses
+# stages with unused inputs.
 KEEP_FUNCTIONS = "-Od"
 OPTIMIZED = re.compile(r"^\w+ \w+\(.*\bTexture2D\b| : TEXCOORD\d+;$", re.MULTILINE)
 REGISTER = re.compile(r"^(?=.* : register\([bst](\d+), space(\d+)\))", re.MULTILINE)
@@ -63,7 +63,7 @@ class HlslHost(vulkan.VulkanHost):
 
 
 class DxcHost(HlslHost):
-    """HLSL that DXC compiles through the Python package compushady. The text names bindings."""
+    """The host `vulkan` with HLSL that DXC compiles, through the Python package compushady."""
 
     name = "dxc"
     path = "HLSL, DXC, "

@@ -34,7 +34,7 @@ REMOVER = ("spirv-opt", "--remove-unused-interface-variables")
 APT = "on Debian: apt-get install"
 TIMEOUT = 60.0  # maximum seconds for one run of a compiler
 
-# Kinds of bindings, as wgpu describes bindings.
+# wgpu's descriptions of binding types.
 FILTERED = {"texture": {"sample_type": "float"}}
 UNFILTERED = {"texture": {"sample_type": "unfilterable-float"}}
 LINEAR = {"mag_filter": "linear", "min_filter": "linear"}
@@ -104,7 +104,7 @@ class VulkanHost(FragmentHost):
         self._device.destroy()
 
     def _evaluate(self, frame: raster.Frame) -> Array:
-        """Values of a pixel stage. The dialect's vertex stage replaces the frame's vertex stage."""
+        """Values of a pixel stage. The vertex stage of `frame` is ignored."""
         count, size = fragment.frame(frame.arguments)
         texels = [fragment.texels(rows, size, fragment.ODD) for rows in frame.arguments.values()]
         sets: tuple[Bindings, ...] = (

@@ -5,7 +5,7 @@ const gl = document.createElement("canvas").getContext("webgl2");
 const floats = gl && gl.getExtension("EXT_color_buffer_float");
 const filters = gl && gl.getExtension("OES_texture_float_linear");
 
-// Name of the device, or the reason why it cannot draw frames.
+// The device's name, or a reason why WebGL cannot draw frames.
 function identify() {
     if (!floats || !filters) {
         return { failed: "the browser has no WebGL2 with float32 frames and filtered float32 textures" };
@@ -57,8 +57,7 @@ function view({ shape, offset }, data, Kind = Float32Array) {
     return new Kind(data, offset, shape.reduce((product, each) => product * each));
 }
 
-// A repeating texture of float32 texels without mipmaps; an array texture if the array has four
-// dimensions.
+// A repeating float32 texture without mipmaps. Arrays of four dimensions become array textures.
 function upload(layout, data) {
     const texture = gl.createTexture();
     if (layout.shape.length == 4) {
@@ -154,7 +153,7 @@ function render(program, job, data) {
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         }
         if (["u_envRadiance", "u_envIrradiance"].includes(name) && layout.shape[0] > 2) {
-            // An environment map is clamped at its poles; a check's map repeats, to keep NaN.
+            // Maps are clamped at the poles, except uniform maps, so that checks detect NaN.
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
         }
         return texture;
@@ -199,8 +198,7 @@ function feedback(program, { attributes, uniforms, count, stride }, data) {
     return captured;
 }
 
-// Result of `work` for a program and the job's arrays: { bytes }, { refused } with the compiler's
-// message, or { failed }.
+// Returns { bytes } from `work`, { refused } with the compiler's message, or { failed }.
 async function answer(makeProgram, work, job) {
     const data = await document.querySelector("input").files[0].arrayBuffer();
     let program;

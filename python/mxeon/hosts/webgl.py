@@ -100,7 +100,7 @@ class Chromium:
     def _ask(
         self, function: str, job: dict[str, object] | None = None, file: Path | None = None
     ) -> Answer:
-        """The result of a JavaScript function of the page, with the version of the browser."""
+        """The result of a JavaScript function of the page, plus the browser's "version"."""
         answer = self._thread.submit(self._answer, function, job, file).result()
         if "failed" in answer:
             raise NotRun(f"{self.name}: {answer['failed']}")
@@ -230,7 +230,7 @@ def program(host: str = "webgl") -> str:
 def _write(path: Path, groups: Mapping[str, Mapping[str, Array]]) -> dict[str, Layout]:
     """Write each array once, and return shapes and offsets in the file by group and name."""
     layout: dict[str, Layout] = {}
-    places: dict[int, object] = {}  # shape and offset of each written array; keys: id(array)
+    places: dict[int, object] = {}  # maps id(array) to shape and offset
     offset = 0
     with path.open("wb") as file:
         for group, arrays in groups.items():

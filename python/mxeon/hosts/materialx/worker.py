@@ -40,7 +40,7 @@ from mxeon.shaders.methods import TABLE_SIZE  # noqa: E402
 from mxeon.shaders.options import set_options  # noqa: E402
 
 Chosen: TypeAlias = tuple[tuple[str, str | int | bool], ...]
-FAR = 1e6  # distance of the camera, from which shaders compute the direction of view
+FAR = 1e6  # distance of the camera, so that view directions are parallel
 DIRECTIONS = 256  # directions over which microfacet shaders sum the environment
 PICTURES = 8  # cached renderers, each with the program of a document
 ANISOTROPY = ("GL_ARB_texture_filter_anisotropic", "GL_EXT_texture_filter_anisotropic")

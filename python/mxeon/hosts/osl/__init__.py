@@ -77,7 +77,7 @@ class OslHost(base.Host):
         """
         text, columns = shader.stages["pixel"], points.columns_of(shader, inputs)
         view = Column("vector", wo)
-        # Points of a check repeat, because closures never depend on wi and rarely depend on wo.
+        # Many points have equal values, because closures never read wi and rarely read wo.
         read = [*columns.values(), *([view] if VIEWED.search(text) else [])]
         values = [np.broadcast_to(each.rows, (len(wo), each.rows.shape[1])) for each in read]
         keys = [row.tobytes() for row in np.concatenate(values, axis=1)]
@@ -94,7 +94,7 @@ class OslHost(base.Host):
     def _run(
         self, shader: Shader, columns: Mapping[str, Column], view: Column, count: int
     ) -> list[str]:
-        """Labels of a shader's closures, one label for each row of the variables."""
+        """The label of the shader's closure at each point."""
         with self._blender.temporary() as name:
             folder, place = Path(name), process.PLACE
             [read] = points.statements({"view": view}, folder / "view.tif", count, place)

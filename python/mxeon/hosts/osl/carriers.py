@@ -29,8 +29,8 @@ class Signature:
     kind: str  # type of the keywords' values; OSL drops a keyword with another type
 
 
-# Keywords follow a semicolon. OSL 1.14.1 added `energy_compensation` and OSL 1.13 added `mode`, but
-# stdosl.h does not mention these two keywords.
+# In a signature, keywords follow the semicolon. `energy_compensation` (since OSL 1.14.1) and `mode`
+# (since OSL 1.13) are missing from stdosl.h.
 SIGNATURES = """
 oren_nayar_diffuse_bsdf(normal normal, color color, float roughness; int energy_compensation)
 burley_diffuse_bsdf(normal normal, color color, float roughness)
@@ -94,7 +94,7 @@ def prelude(text: str) -> str:
     """OSL that turns the CLOSURES in a text, and OPERATIONS on closures, into labels."""
     start = len(BEFORE)
     labels = LABELS.format(before=BEFORE.replace('"', '\\"'), start=start, rest=start + len(AFTER))
-    names = [name for name in CLOSURES if name in text]  # other closures take time to compile
+    names = [name for name in CLOSURES if name in text]  # each closure takes time to compile
     closure = "closure color"
     lines = [
         labels,

@@ -131,7 +131,7 @@ SURFACE = {
 def columns_of(
     shader: Shader, inputs: Inputs, turned: Callable[[Array], Array] = lambda rows: rows
 ) -> Mapping[str, Column]:
-    """Values for the surface and a shader's inputs, by variable. `turned` rotates directions."""
+    """Values of the OSL variables for surface and inputs of a shader. `turned` rotates vectors."""
     columns = {
         variable: Column(kind, inputs.get(name, default), declared=False)
         for variable, (kind, name, default) in SURFACE.items()
@@ -154,10 +154,10 @@ def with_variables(
     place: str,
     last: str,
 ) -> str:
-    """Text of a shader that reads variables at each point, with one more statement at the end.
+    """Text of a shader whose inputs are replaced by variables that vary from point to point.
 
-    The variables hide inputs of the shader; see `statements` for the arguments. `last` is the
-    statement at the end, with {output} for the name of the shader's output.
+    `last` is a statement to add at the end, with {output} for the name of the shader's output. The
+    other arguments are as in `statements`.
     """
     head, brace, body = shader.stages["pixel"].rpartition("\n)\n{\n")
     main, end, _ = body.rpartition("}")

@@ -37,7 +37,7 @@ class ClosureTree:
 
 @dataclass(frozen=True)
 class TreeRows:
-    """A tree for closures of the same structure, and the rows of points that share the tree."""
+    """A tree of closures, and the rows of the points that share the tree."""
 
     rows: NDArray[np.intp]
     tree: ClosureTree | None
@@ -56,7 +56,7 @@ def whole_label(texts: Mapping[str, str], root: str) -> str:
 
 
 def read_trees(labels: Sequence[str]) -> tuple[TreeRows, ...]:
-    """Trees of labels, one for each structure. Raises ShaderError for an undocumented closure."""
+    """One tree per structure of labels. Raises ShaderError for an undocumented closure."""
     shapes: dict[str, list[int]] = {}
     numbers = []
     for row, label in enumerate(labels):

@@ -67,7 +67,7 @@ class StormHost(DocumentHost):
         return interpreter(self.name)
 
     def _needs_blocks(self, shader: Shader) -> bool:
-        """Whether a shader has textures, so that triangles must cover blocks of 2 x 2 pixels.
+        """Whether a shader reads textures. Triangles must then cover blocks of 2 x 2 pixels.
 
         For pixels of a block outside a triangle, llvmpipe reads Storm's buffers as 0. Derivatives
         of texture coordinates are then wrong, so textures are read at the wrong size.
