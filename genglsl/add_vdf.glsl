@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node add for two media. Their coefficients are added.
+// Node add for two media: coefficients are added.
 
 #include "lib/medium.glsl"
 

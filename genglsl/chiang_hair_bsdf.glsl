@@ -190,8 +190,8 @@ void chiang_hair_bsdf(ClosureData closureData, vec3 tint_R, vec3 tint_TT, vec3 t
     }
     else if (closureData.closureType == CLOSURE_TYPE_INDIRECT)
     {
-        // Irradiance is from the viewer's side for R and TRT, from the far side for TT, and the
-        // mean for TRRT+. This is exact for an untilted cuticle in a uniform environment.
+        // R and TRT use irradiance from the viewer's side, TT from the far side, TRRT+ the mean.
+        // The response is exact for an untilted cuticle in a uniform environment.
         ChiangHairSection section = chiang_hair_section(wo, ior, absorption_coefficient);
         vec3 both = 0.5 * tint[2] * section.A_rest;
         vec3 front = tint[0] * section.A[0] + tint[2] * section.A[2] + both;

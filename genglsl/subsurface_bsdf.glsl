@@ -11,9 +11,9 @@ void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 rad
 {
     bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));
 
-    // Curvature of the geometry, not of the node's normal, since diffusion depends on distances
-    // between points. If nothing changes between pixels, the surface counts as flat. Derivatives
-    // come first, since they are undefined in branches.
+    // Diffusion depends on distances between points, so the geometry's normal is used here. If
+    // nothing changes between pixels, the surface counts as flat. Derivatives would be undefined in
+    // branches.
     float curvature = length(fwidth(closureData.N)) / max(length(fwidth(closureData.P)), 1e-30);
 
     if (weight <= 0.0)

@@ -46,10 +46,10 @@ float ggx_cosine_dielectric(float mu, float alpha, float ior)
     return clamp(mu + alpha * (1.0 - x) * N / D, 0.0, 1.0);
 }
 
-// Two fractions of light that facets transmit if ior < 1. The first is the average of 1 - F over
-// visible facets. The second is that of reversed paths, without light that facets reflect back.
-// Source and derivation: tools/fits/ggx_inside.py. Domain: mu and alpha in [1e-4, 1], ior in [0.33,
-// 0.98]. Largest absolute errors: 2.8e-2 of an albedo by the first, 3.4e-2 of the second.
+// Fractions of light that facets transmit if ior < 1. x is the average of 1 - F over visible
+// facets. y is the average for reversed paths, without light that facets reflect back. Source and
+// derivation: tools/fits/ggx_inside.py. Domain: mu and alpha in [1e-4, 1], ior in [0.33, 0.98].
+// Largest absolute errors: 2.8e-2 of an albedo computed by x, 3.4e-2 of y.
 vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
 {
     float mu2 = mu * mu;

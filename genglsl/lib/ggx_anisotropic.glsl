@@ -6,7 +6,7 @@
 
 #include "ggx_albedo.glsl"
 
-// Cosine and alpha for ggx_missing, and a factor of 1 - E_ss. `visible` is the cosine and alpha for
+// Returns (mu, alpha, k), where 1 - E_ss is k ggx_missing(mu, alpha). `visible` is (mu, alpha) for
 // averages over visible facets.
 vec3 ggx_facets(vec3 wo, vec2 roughness, out vec2 visible)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Roughness and absorption of hair from artistic parameters.
 
-// Least roughness, to avoid a division by 0, and least albedo, to avoid log(0).
+// Roughness and albedo are at least this value, to avoid 1 / 0 and log(0).
 #define HAIR_LEAST 1e-3
 
 // Least value of 1 - concentration of melanin, so that its logarithm is finite.

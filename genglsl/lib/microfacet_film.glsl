@@ -17,8 +17,8 @@
 // weights (1 - x^2) / 2. FILM_OUTER is x.
 #define FILM_OUTER 0.70710678
 
-// Components: cosine, width, weights for visible facets and F_ss. Nodes 0 to 2 are for visible
-// facets, 3 to 5 for F_ss, and 6 is the half vector.
+// A node is (cosine, width, weight of visible facets, weight of F_ss). Nodes 0 to 2 are for
+// visible facets, 3 to 5 for F_ss, and node 6 is the half vector.
 vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
 {
     float x = FILM_OUTER * float(i - 1);
@@ -31,8 +31,8 @@ vec4 microfacet_film_node(int i, float mu_h, vec3 facets)
     return i > 5 ? vec4(mu_h, 0.0, 0.0, 0.0) : node;
 }
 
-// Reflectances under a film. Unused values are skipped: F at the half vector in an environment, and
-// the average over visible facets of opaque metal in direct light.
+// Reflectances under a film. F at the half vector is skipped in environments. The average over
+// visible facets is skipped for opaque metal in direct light.
 void microfacet_film(MicrofacetLobe lobe, FresnelData fd, inout MicrofacetFresnel F)
 {
     F.outside = vec3(1.0);

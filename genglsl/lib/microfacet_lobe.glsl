@@ -40,8 +40,8 @@ struct MicrofacetFresnel
     vec3 outside;
 };
 
-// Whether a lobe is off: its weight is at most 0, or it only transmits (scatter_mode 1) and
-// reflection is asked for.
+// A lobe is off if its weight is at most 0, or if scatter_mode is 1 (only transmit) and light is
+// reflected.
 bool microfacet_is_off(ClosureData closureData, float weight, int scatter_mode)
 {
     bool transmission = closureData.closureType == CLOSURE_TYPE_TRANSMISSION;
@@ -60,7 +60,7 @@ float microfacet_stretched(MicrofacetLobe lobe, vec3 w)
     return length(microfacet_local(lobe, w) * vec3(lobe.roughness, 1.0));
 }
 
-// Cosines and alphas are clamped because they are divisors. Retroreflection mirrors wo about N.
+// Clamps avoid divisions by 0. Retroreflection mirrors wo about N.
 MicrofacetLobe microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec2 roughness,
                                bool retroreflective)
 {
@@ -96,8 +96,8 @@ float microfacet_lossless(MicrofacetLobe lobe)
     return mx_ggx_NDF(microfacet_local(lobe, lobe.wh), lobe.roughness) * mu_i / (2.0 * smith);
 }
 
-// Environment light. MaterialX masks by the mean alpha. Under a film, facets are perfect
-// mirrors, and the caller applies F.outside.
+// Environment light. MaterialX masks facets with the mean alpha. Under a film, facets reflect as
+// mirrors, and the caller multiplies by F.outside.
 vec3 microfacet_environment(MicrofacetLobe lobe, int distribution, FresnelData fd)
 {
     fd.ior = fd.model == FRESNEL_MODEL_DIELECTRIC ? max(fd.ior, MICROFACET_LEAST_INDEX) : fd.ior;

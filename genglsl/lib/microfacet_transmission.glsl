@@ -7,13 +7,12 @@
 // as in a solid sphere. If MaterialX renders transmission as opacity, the result is the tint.
 //
 // MaterialX's squared cosine at the exit is 1 - n^2 (1 - q^2), where q is the cosine inside. If
-// rounding makes the square negative, NaN follows. So wo is multiplied by 1 + d, which adds 8 d q^2
-// / n^2, at grazing 8e-6 n^2, three times the rounding of seven operations. Near n = 1 and above 4,
-// d would be too large, so n is clamped to [1.001, 4]. Smooth surfaces keep n above 4 but enlarge
-// the cosine of wo.
+// the square rounds to a negative number, the result is NaN. So wo is multiplied by 1 + d, which
+// adds 8 d q^2 / n^2 to the square: at grazing 8e-6 n^2, three times the rounding of seven
+// operations. Near n = 1 and above 4, d would be too large, so n is clamped to [1.001, 4]. Smooth
+// surfaces keep n above 4 but enlarge the cosine of wo.
 //
-// The Schlick curve is F0 except at grazing. F0 and F90 are such that MaterialX transmits `share`.
-// A and B are MaterialX's fits.
+// The Schlick curve is F0 except at grazing. MaterialX transmits, with its fits A and B:
 //   sampled: (1 - F0) / G_1(mu)           prefiltered: 1 - (A F0 + B F90)
 vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData fd, vec3 share, vec3 tint)
 {
@@ -51,7 +50,7 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, bsdf);
     if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
     {
-        // In mode 1, an opacity omits `passed`, since the layer above subtracts the reflection.
+        // In mode 1, the layer above subtracts reflected light, so an opacity is not reduced.
         vec3 passed = max(1.0 - F.visible * mix(F.average, vec3(1.0), lobe.albedo), 0.0);
         bool below = scatter_mode == 1;
         bsdf.response = microfacet_transmitted(lobe, distribution, fd, below ? passed : vec3(1.0), tint)

@@ -15,7 +15,7 @@ vec3 subsurface_ring(float mu, vec3 chord)
     vec3 along = mu * (1.0 - 0.5 * squared);
     vec3 across = sqrt(max((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared), 0.0));
 
-    // If the terminator cuts a circle, the mean exceeds the cosine at the circle's center.
+    // If the terminator cuts the circle, add light, since negative cosines count as 0.
     vec3 height = min(abs(along) / max(across, 1e-30), 1.0);
     vec3 more = across * (sqrt(1.0 - height * height) - height * acos(height));
     return max(along, 0.0) + more / 3.14159265358979;
@@ -29,8 +29,7 @@ vec3 subsurface_blur(float mu, vec3 reach)
     vec3 light = vec3(0.0);
     vec3 total = vec3(0.0);
 
-    // One ring is enough if `reach` is 0. The count depends on an input, so compilers do not unroll
-    // the loop.
+    // One ring is enough if `reach` is 0. Compilers do not unroll a loop whose count is an input.
     int rings = max(reach.x, max(reach.y, reach.z)) > 0.0 ? SUBSURFACE_RINGS : 1;
     for (int i = 0; i < rings; i++)
     {

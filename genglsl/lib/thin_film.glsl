@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reflectance F_airy of a film (2) between vacuum (1) and a substrate (3) in linear Rec. 709:
-// [MaterialX2026], Thin-Film Iridescence Model, whose sections are named below. Each channel has
-// its own substrate and sum over CIE XYZ. z = r_21 r_23 is complex: see
-// python/mxeon/models/thin_film.py.
+// [MaterialX2026], Thin-Film Iridescence Model, whose sections are named below. Each color channel
+// has its own substrate. python/mxeon/models/thin_film.py explains the complex z = r_21 r_23.
 
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
-// Section Spectral Sensitivity: two Gaussians for X, one for Y, one for Z. Positions are mu_k in
-// 1/m. Variances are sigma_k^2 in 1/m^2 (the first is the least). Heights are v_k sqrt(2 pi
-// sigma_k^2) / 1.0685e-7. Colors in Rec. 709 are adapted from white E by Bradford's method.
+// Section Spectral Sensitivity: two Gaussians for X, one for Y, one for Z. Positions mu_k are
+// in 1/m. Variances sigma_k^2 are in 1/m^2, and the first is the smallest. Heights are
+// v_k sqrt(2 pi sigma_k^2) / 1.0685e-7. Colors in Rec. 709 are adapted from white E by Bradford's
+// method.
 #define THIN_FILM_POSITIONS vec4(1.6810e6, 2.2399e6, 1.7953e6, 2.2084e6)
 #define THIN_FILM_VARIANCES vec4(4.3278e9, 4.5282e9, 9.3046e9, 6.6121e9)
 #define THIN_FILM_HEIGHTS vec4(0.84659, 0.15386831, 1.0002219, 1.0011225)
@@ -18,9 +18,9 @@
 
 #define THIN_FILM_LEAST 1e-12  // avoids 0 / 0
 
-// The sum ends if a bound of the next term's square is at most VALUE times the squared mean
-// reflectance or WIDTH times the squared width of cosines. Each term multiplies the bound by at
-// most RATIO. So a mean of 1e-3 needs ln(VALUE 1e-6) / ln(RATIO) = 86.1 < COUNT terms. Source:
+// The sum ends when the square of the next term is at most VALUE times the squared mean reflectance
+// or WIDTH times the squared width of cosines. A bound of the square falls by RATIO per term, so a
+// mean of 1e-3 needs at most ln(VALUE 1e-6) / ln(RATIO) = 86.1 < COUNT terms. Source:
 // tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
@@ -125,8 +125,8 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     vec4 S_re = THIN_FILM_HEIGHTS * cosine;  // S_m / 2 times the heights
     vec4 S_im = THIN_FILM_HEIGHTS * sine;
 
-    // Squared bounds of the first term and of the ratio of terms. |z| is that of polarization s,
-    // which reflects more. C_0 is that of p, which transmits more.
+    // Bounds of the squared first term and of the squared ratio of terms. Polarization s has the
+    // larger |z|, and p has the larger |C_0|.
     vec3 R = z_s.re * z_s.re + z_s.im * z_s.im;
     vec3 first = C0_p * C0_p * R;
     float order2 = max(first.x, max(first.y, first.z)) * fade2.x;
@@ -172,7 +172,7 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
 // F_airy at cosine mu, averaged over nearby cosines if width > 0. A film index below 1 counts as 1.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
-    // Section Three-Layer Geometry: g = n mu_t. This form of g^2 keeps all digits of a small mu.
+    // Section Three-Layer Geometry: g = n mu_t. The factors of n^2 - 1 preserve a small mu.
     float n = max(fd.tf_ior, 1.0);
     float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 

@@ -9,7 +9,7 @@
 #include "libraries/pbrlib/genglsl/mx_mix_bsdf.glsl"
 #include "libraries/pbrlib/genglsl/mx_layer_vdf.glsl"
 
-// Combined draw or density of the closures a and b, scaled by factor_a and factor_b.
+// Draw or density of two closures, whose weights are scaled by the factors.
 void path_combine(vec3 a, vec3 factor_a, vec3 b, vec3 factor_b, inout BSDF result)
 {
     if (path_asked != PATH_VALUE)

@@ -30,7 +30,7 @@ vec3 path_root; // response of the closure called last
 #define u_numActiveLightSources 1
 #define u_refractionTwoSided false
 
-// Octahedral map of unit vectors to the square [-1, 1]^2. path_unpacked is its inverse.
+// Octahedral map of unit vectors to the square [-1, 1]^2, inverted by path_unpacked.
 vec2 path_fold(vec2 w)
 {
     return vec2(w.x < 0.0 ? abs(w.y) - 1.0 : 1.0 - abs(w.y), w.y < 0.0 ? abs(w.x) - 1.0 : 1.0 - abs(w.x));

@@ -2,14 +2,14 @@
 // Microfacet lobes for path tracers: docs/path_tracing.md. Macros replace three functions in the
 // nodes' code.
 //
-// If wo lies in the denser medium, a facet may be lost: it neither reflects wo into that medium nor
-// refracts wo out of it. A draw replaces a lost facet by its partner, the facet at the mirrored
-// height on the spherical cap of visible normals [Dupuy2023]. Mirroring preserves areas and is its
-// own inverse, so a facet whose partner is lost is drawn twice as often.
+// In the denser medium, a facet may be lost: the facet neither reflects wo into the medium nor
+// refracts wo out of the medium. A draw replaces a lost facet by its partner, the facet at the
+// mirrored height on the spherical cap of visible normals [Dupuy2023]. Mirroring preserves areas,
+// and mirroring twice changes nothing, so facets whose partner is lost are drawn twice as often.
 //
-// Transmission out of the denser medium is reciprocal: see python/mxeon/models/transmission.py. All
-// other light is reflected: a part with the Fresnel reflectance from outside, which is 1 beyond the
-// critical angle, and the remainder as by perfect mirrors.
+// Transmission out of the denser medium is reciprocal: see python/mxeon/models/transmission.py. Two
+// lobes reflect all other light: a lobe with the Fresnel reflectance from outside (1 beyond the
+// critical angle), and a lobe of perfect mirrors.
 
 #include "lib/questions.glsl"
 #include "../lib/microfacet_transmission.glsl"
@@ -22,7 +22,7 @@
 // facet.
 #define PATH_LEAST_BEND 1e-3
 
-// Least albedo in the probability of a lobe, since a fitted albedo may be 0 though facets reflect.
+// Least albedo that determines a lobe's probability. A fit may be 0 although facets reflect.
 #define PATH_LEAST_SHARE 1e-3
 
 // Value of path_eta for a node's ior.
@@ -68,13 +68,13 @@ bool path_is_denser()
     return path_eta < 1.0 && !path_thin;
 }
 
-// Whether facet H is lost: it neither reflects wo upwards nor refracts wo downwards.
+// Whether facet H neither reflects wo upwards nor refracts wo downwards.
 bool path_is_lost(MicrofacetLobe lobe, vec3 H)
 {
     return dot(lobe.N, path_turned(lobe.wo, H)) <= 0.0 && dot(lobe.N, path_refracted(lobe.wo, H, lobe.N)) >= 0.0;
 }
 
-// Partner of path_facet. Heights z on the cap of visible normals are in [-wo.z, 1].
+// The partner of path_facet. Heights z on the cap of visible normals are in [-wo.z, 1].
 vec3 path_partner(MicrofacetLobe lobe)
 {
     vec3 stretch = vec3(lobe.roughness, 1.0);
@@ -85,9 +85,9 @@ vec3 path_partner(MicrofacetLobe lobe)
     return path_world(vec3(flat_cap + wo.xy, max(z + wo.z, M_FLOAT_EPS)) * stretch, lobe.X, lobe.N);
 }
 
-// If wo is in the denser medium, `lobe` gets the albedo and averages of the direction outside into
-// which path_facet refracts wo. Reflected light only needs a ratio of transmittances, for which any
-// direction outside is suitable.
+// In the denser medium, `lobe` gets the albedo and averages for the direction outside into which
+// path_facet refracts wo. Reflected light depends only on ratios, which any direction outside
+// provides.
 void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
 {
     bool below = dot(lobe.N, lobe.wi) < 0.0;
@@ -116,7 +116,7 @@ MicrofacetLobe path_microfacet_lobe(ClosureData closureData, vec3 N, vec3 X, vec
     MicrofacetLobe lobe = microfacet_lobe(closureData, N, X, roughness, retroreflective);
     if (retroreflective && dot(lobe.N, lobe.wi) < 0.0)
     {
-        lobe.wi = path_turned(lobe.wi, lobe.N);  // transmission is not mirrored
+        lobe.wi = path_turned(lobe.wi, lobe.N);  // only reflection is mirrored
     }
     path_facet = path_facet_between(lobe.wo, lobe.wi, lobe.N);
     if (path_asked == PATH_DRAW)
@@ -216,7 +216,7 @@ void path_microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelD
     }
     if (scatter_mode != 1)
     {
-        // A draw keeps the full weight of the lobe below, so that facets that refract wo are drawn.
+        // In draws, the lobe below keeps its full weight, because that lobe draws refracted wi.
         bsdf.throughput = path_is_denser() && !valued ? vec3(1.0) : max(1.0 - albedo * weight, 0.0);
         bsdf.response = microfacet_lossless(lobe) * F.value * factor * scale;
     }

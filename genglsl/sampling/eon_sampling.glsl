@@ -46,7 +46,7 @@ float eon_cube_gap(float mu, float S)
     return mu * (1.0 + S + S * S) / (1.0 + S);
 }
 
-// Direction with cosine mu, sine S, x >= 0 and an azimuth whose sine is uniform in [-1, 1].
+// Direction with z = mu, x >= 0 and a uniform y in [-S, S].
 vec3 eon_towards(float mu, float S, float u2)
 {
     return vec3(2.0 * S * sqrt(u2 * (1.0 - u2)), S * (2.0 * u2 - 1.0), mu);
@@ -102,8 +102,8 @@ vec3 eon_flat_draw(float v, float u2, float q)
     return vec3((q * (1.0 - wh.y * wh.y) + 2.0 * wh.x) / (1.0 + root), wh.y, z);
 }
 
-// Direction for wo at azimuth 0. u1 chooses a part in proportion to the part's integral (1 for
-// `flat`). Parts except `flat` share one call of pow, which saves time on GPUs.
+// Direction for wo at azimuth 0. u1 chooses a part in proportion to the part's integral, which is 1
+// for `flat`. Parts except `flat` share one call of pow, which saves time on GPUs.
 vec3 eon_draw(float mu_o, float S_o, float u1, float u2, float rho, float roughness)
 {
     float q = roughness * S_o;

@@ -11,8 +11,8 @@
 // Largest float32 below 1.
 #define EON_BELOW_ONE (1.0 - 1.0 / 16777216.0)
 
-// Cosine and sine of the azimuth of wo, and sine of wo's polar angle. The azimuth is 0 if the
-// latter sine's square underflows.
+// Cosine and sine of the azimuth of wo, and the sine S_o of the polar angle. The azimuth is 0 if
+// S_o^2 underflows.
 vec3 eon_azimuth_frame(vec3 wo)
 {
     float S_o = min(sqrt(wo.x * wo.x + wo.y * wo.y), 1.0);

@@ -3,8 +3,8 @@
 //   PATH_VALUE: f cos(theta_i) for path_wo and path_wi
 //   PATH_PDF: (weight, density of path_wi in 1/sr, 0)
 //   PATH_DRAW: (weight, drawn direction packed into two numbers)
-// The weight is the closure's approximate albedo. Weights choose between two closures and average
-// their densities, so densities are exact although weights are not.
+// The weight is the closure's approximate albedo. Draws choose between two closures by weight, and
+// combined densities are averaged by weight. So densities are exact, although weights are not.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
@@ -16,13 +16,13 @@
 
 #define PATH_WASTED vec2(4.0, 0.0)
 
-// Whether a closure must answer: only when the surface node evaluates a light.
+// A closure is evaluated only when the surface node evaluates a light.
 bool path_is_asked(ClosureData closureData)
 {
     return closureData.closureType == CLOSURE_TYPE_REFLECTION && path_asked != PATH_NOTHING;
 }
 
-// Arguments for the response to direct light, which includes F at the half vector.
+// Arguments for the response to direct light.
 ClosureData path_question_in_direct_light(ClosureData closureData)
 {
     closureData.closureType = CLOSURE_TYPE_REFLECTION;
@@ -62,13 +62,13 @@ vec3 path_across(vec3 N)
     return normalize(cross(abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), N));
 }
 
-// Response of a lobe: the weight, with the packed direction `drawn` or the density `pdf`.
+// Response to PATH_DRAW (weight, direction) or to PATH_PDF (weight, density).
 vec3 path_answer(float weight, vec2 drawn, float pdf)
 {
     return path_asked == PATH_DRAW ? vec3(weight, drawn) : vec3(weight, pdf, 0.0);
 }
 
-// Response of two lobes. A draw chooses a lobe by path_u.z, which is then rescaled.
+// Response of two lobes. A draw chooses a lobe by path_u.z and rescales path_u.z.
 vec3 path_either(vec3 a, vec3 b)
 {
     float total = a.x + b.x;
@@ -97,7 +97,7 @@ void path_end(BSDF bsdf)
     path_root = bsdf.response;
 }
 
-// Draws wi in proportion to the cosine with N. bsdf.response is the value or albedo on entry.
+// Draws wi in proportion to dot(wi, N). On entry, bsdf.response is the value or the albedo.
 void path_cosine(vec3 N, inout BSDF bsdf)
 {
     if (path_asked != PATH_VALUE)
