@@ -12,7 +12,7 @@ import pytest
 
 import mxeon
 from mxeon import report
-from mxeon.conformance.results import Picture
+from mxeon.conformance.results import Picture, Refused
 from mxeon.errors import CheckError
 from mxeon.fit import fit_brdf, read_merl
 from mxeon.models.diffuse import eon_brdf
@@ -95,7 +95,7 @@ def test_an_argument_that_is_refused_names_the_parameter(short):
 # --- summaries of runs ------------------------------------------------------------------------
 
 
-REFUSED = {"refused": {"cut.mtlx": ("cut.mtlx: must be XML",)}}
+REFUSED = {"refused": (Refused("cut.mtlx", ("cut.mtlx: must be XML",)),)}
 STOCK = {"compared": ("stock",)}
 ALLOWED = "1 differs, but the specification allows it."
 DIRECTIONS = caused("defect", "other_directions")

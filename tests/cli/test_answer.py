@@ -16,6 +16,7 @@ from mxeon import check
 from mxeon.cli import main
 from mxeon.cli.answer import LONGEST, MANY, answer, summary_by_cause
 from mxeon.cli.output import Line, wrapped
+from mxeon.conformance.results import Refused
 from mxeon.errors import MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.report import to_json
@@ -312,7 +313,7 @@ def test_a_folder_stands_for_the_documents_in_it_and_below_it(tmp_path):
         (tmp_path / name).write_text("")
     single = str(tmp_path / "b.mtlx")
     run = check([tmp_path, single], ["msl"])  # the folder contains no MaterialX document
-    assert {*run.refused} == {single, str(tmp_path / "sub" / "a.mtlx")}
+    assert {*map(str, run.refused)} == {single, str(tmp_path / "sub" / "a.mtlx")}
 
 
 RUN = made_run(
@@ -326,15 +327,22 @@ RUN = made_run(
     made(key="picture", subject="noise.mtlx: look", measured=("lobe.color",)),
     made(FAILED, subject="noise.mtlx: node"),
     documents=("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx"),
-    refused={"light.mtlx": ('light.mtlx: must contain a renderable element; got "a"',)},
+    refused=(Refused("light.mtlx", ('light.mtlx: must contain a renderable element; got "a"',)),),
 )
 
 
 def test_a_document_that_one_library_lacks_counts_once():
-    run = replace(RUN, refused={"a/clay.mtlx with stock": ("a/clay.mtlx: no x (with stock)",)})
+    run = replace(
+        RUN, refused=(Refused("a/clay.mtlx", ("a/clay.mtlx: no x (with stock)",), "stock"),)
+    )
     first, *rows = summary_by_cause(run)
     assert first.startswith("3 documents, 1 ")
     assert rows[0] == "     1 refused: no x (with stock) (a/clay.mtlx)"
+
+
+def test_a_document_whose_name_reads_like_a_refusal_is_itself():
+    run = replace(RUN, refused=(Refused("clay with stock", ("a fault of an included file",)),))
+    assert "1 refused: a fault of an included file (clay with stock)" in summary_by_cause(run)[1]
 
 
 def test_causes_count_documents_the_worst_first():

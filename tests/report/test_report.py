@@ -17,6 +17,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from mxeon.conformance.results import Refused
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
@@ -85,7 +86,7 @@ def run():
         ),
         notes=(HOSTILE, "cycles cannot express QON"),
         documents=(Path("a/clay.mtlx"),),
-        refused={"a.mtlx": (f"a.mtlx: {HOSTILE}", "a.mtlx: 2")},
+        refused=(Refused("a.mtlx", (f"a.mtlx: {HOSTILE}", "a.mtlx: 2")),),
     )
 
 
@@ -175,7 +176,7 @@ def test_page_says(page, words):
 
 def test_an_unfinished_run_says_what_is_missing(run):
     missing = ("gl, value, clay, eonlib",)
-    started = replace(run, results=(made_result(PASSED),), missing=missing, refused={})
+    started = replace(run, results=(made_result(PASSED),), missing=missing, refused=())
     text = Page(page_of(started)).text
     assert "The run is not finished: 1 item is missing." in text
     assert "gl, value, clay, eonlib" in text
@@ -316,7 +317,7 @@ SYNTAX = {"error": None, "diagnosis": quoted("GLSL: no"), "worst": {}}
 def test_a_failure_in_junit_is_known_or_new_and_has_no_path(run, fields, kind, message, text):
     names = {"/builds/7/libraries-1.39": "libraries-1.39", "/a/stock": "/a/stock", "stock": "stock"}
     results = [made_result(FAILED, library=each, tolerance=2e-8, **fields) for each in names]
-    root = ElementTree.fromstring(to_junit(replace(run, results=tuple(results), refused={})))
+    root = ElementTree.fromstring(to_junit(replace(run, results=tuple(results), refused=())))
     assert [suite.get("name") for suite in root] == [f"gl with {each}" for each in names.values()]
     case = root[0].find("testcase")
     assert case.get("classname") == "mxeon.gl.libraries-1.39.value"

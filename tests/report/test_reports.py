@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from mxeon.cli import main
-from mxeon.conformance.results import Cause, Diagnosis, Errors, Kind
+from mxeon.conformance.results import Cause, Diagnosis, Errors, Kind, Refused
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.results.records import make_converter
 from mxeon.models import table as reference
@@ -64,7 +64,7 @@ def changes(before, after):
 
 
 GONE = replace(made_run(), results=())
-REFUSED = replace(made_run(), refused={"clay.mtlx": ("no such node",)})
+REFUSED = replace(made_run(), refused=(Refused("clay.mtlx", ("no such node",)),))
 TWO = replace(made_run(), documents=(Path("a.mtlx"), Path("b.mtlx")))
 FEW = {"verdict": FAILED, "error": 1e-4, "samples": "a"}
 FEW["errors"] = (Errors(7000, 5, 0, 1e-4, 5e-7),)

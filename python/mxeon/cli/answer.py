@@ -199,9 +199,8 @@ def _document_states(run: Run) -> Iterator[DocumentState]:
                 _cause(worst, any(each.measured for each in results)),
                 all(each.check == "picture" and each.error is not None for each in results),
             )
-    for document, (fault, *others) in run.refused.items():
-        if not fault.startswith(f"{document}: "):
-            document = document.rpartition(" with ")[0]  # " with " precedes the name of a library
+    for each in run.refused:
+        document, (fault, *others) = each.document, each.faults
         more = f"; {counted(len(others), 'more fault')}" if others else ""
         cause = QUOTED_PATH.sub("...", fault.removeprefix(f"{document}: ") + more)
         yield DocumentState(document, "", REFUSED, cause)
@@ -223,8 +222,8 @@ def _cause(result: Result, measured: bool) -> str:
 
 
 def _is_refused(run: Run, document: str, library: str) -> bool:
-    """Whether a document was refused with every library, or with the given library."""
-    return not run.refused.keys().isdisjoint((document, f"{document} with {library}"))
+    """Whether a document was refused with a library, or with every library if `library` is ""."""
+    return any(each.concerns(document, library) for each in run.refused)
 
 
 def _materials(run: Run) -> Iterator[Line]:
@@ -233,7 +232,7 @@ def _materials(run: Run) -> Iterator[Line]:
     # Name, sentence, rank and verdict of each material on each host.
     rows: list[tuple[str, str, int, Verdict | None]] = []
     for document in run.contents:
-        if document in run.refused:
+        if _is_refused(run, document, ""):
             continue
         pictures = (each for each in run.results if _is_picture(each, document))
         materials = grouped(pictures, lambda each: (each.subject, each.host))
@@ -382,7 +381,7 @@ def _not_run(run: Run, full: bool, pictures: bool) -> Iterator[Line]:
 
     Without `pictures`, checks of documents' pictures are left out.
     """
-    documents = [each for each in run.contents if each not in run.refused and not pictures]
+    documents = [each for each in run.contents if not (pictures or _is_refused(run, each, ""))]
     not_run = (
         each
         for each in run.results

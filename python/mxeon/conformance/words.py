@@ -603,7 +603,7 @@ def sentence(run: Run) -> str:
         verb = "is" if len(run.missing) == 1 else "are"
         text += f" The run is not finished: {counted(len(run.missing), 'item')} {verb} missing."
     if run.refused:
-        names, faults = tuple(run.refused), counted(len(run.errors), "error")
+        names, faults = tuple(map(str, run.refused)), counted(len(run.errors), "error")
         if passed + differing + failed:
             verb = "was" if len(names) == 1 else "were"
             text = f"{listed(names)} {verb} not checked: {faults}. {text}"

@@ -87,7 +87,7 @@ def to_json(run: Run) -> str:
         "missing": run.missing,
         "compared": run.compared,
         "unjudged": run.unjudged,
-        "refused": tuple(run.refused),
+        "refused": tuple(map(str, run.refused)),
         "errors": run.errors,
         "version": run.version,
         "software": run.software,

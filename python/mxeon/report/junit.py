@@ -59,11 +59,13 @@ def to_junit(run: Run) -> str:
         count = str(len(run.refused))
         totals = {"tests": count, "failures": "0", "errors": count, "skipped": "0"}
         suite = ElementTree.SubElement(root, "testsuite", {"name": "documents"} | totals)
-        for document, lines in run.refused.items():
-            attributes = {"classname": "mxeon.documents", "name": _xml(document)}
+        for each in run.refused:
+            attributes = {"classname": "mxeon.documents", "name": _xml(each)}
             case = ElementTree.SubElement(suite, "testcase", attributes)
-            first = ElementTree.SubElement(case, "error", type="refused", message=_xml(lines[0]))
-            first.text = _xml("\n".join(lines))
+            first = ElementTree.SubElement(
+                case, "error", type="refused", message=_xml(each.faults[0])
+            )
+            first.text = _xml("\n".join(each.faults))
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding="unicode")
     # The XML declaration is written here, because ElementTree would declare the encoding of the

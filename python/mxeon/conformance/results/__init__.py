@@ -402,6 +402,22 @@ def report_files(folder: AnyPath) -> Iterator[Path]:
 
 
 @dataclass(frozen=True)
+class Refused:
+    """The faults of a document that `library` cannot read, or no library if `library` is ""."""
+
+    document: str
+    faults: tuple[str, ...]
+    library: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.document} with {self.library}" if self.library else self.document
+
+    def concerns(self, document: str, library: str) -> bool:
+        """Whether `library` cannot read `document`."""
+        return self.document == document and self.library in ("", library)
+
+
+@dataclass(frozen=True)
 class Scope:
     """The subjects of a run, and the software versions.
 
@@ -409,8 +425,7 @@ class Scope:
       MaterialX.
     - `contents`: Titles of the nodes in each document that the user named, by the document's path.
     - `unreached`: Regions that a node's inputs never reach, by document and by the node's title.
-    - `refused`: The faults of each document that could not be judged, by the document's path. If
-      other libraries can read the document, the key also names the library: "clay.mtlx with stock".
+    - `refused`: The documents that could not be judged, or not with one library.
     - `libraries`: Files of each folder that was judged as a library. The key "folder" has the
       folder's own files. The key "MaterialX" has the files that complete the folder, unless the
       folder is loaded before MaterialX.
@@ -424,7 +439,7 @@ class Scope:
     documents: tuple[Path, ...] = ()
     contents: dict[str, tuple[str, ...]] = field(default_factory=dict)
     unreached: dict[str, dict[str, tuple[Region, ...]]] = field(default_factory=dict)
-    refused: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    refused: tuple[Refused, ...] = ()
     libraries: dict[str, dict[str, tuple[str, ...]]] = field(default_factory=dict)
     compared: tuple[str, ...] = ()
     unjudged: tuple[tuple[str, str], ...] = ()
@@ -509,7 +524,7 @@ class Run(Scope):
     @property
     def errors(self) -> tuple[str, ...]:
         """The faults of all documents that were refused."""
-        return tuple(line for lines in self.refused.values() for line in lines)
+        return tuple(line for each in self.refused for line in each.faults)
 
     def is_elsewhere(self, result: Result, *documents: str) -> bool:
         """Whether a check fails only for inputs or lobes that the user's documents never use."""

@@ -12,7 +12,7 @@ from functools import lru_cache, partial
 from itertools import chain, product
 from pathlib import Path
 
-from mxeon.conformance.results import NOT_RUN, REPORT, SOURCE, Run, Scope
+from mxeon.conformance.results import NOT_RUN, REPORT, SOURCE, Refused, Run, Scope
 from mxeon.conformance.run import plan
 from mxeon.conformance.run.journal import Journal, read_journal, refusal
 from mxeon.conformance.run.judge import Judge, one_result
@@ -124,7 +124,7 @@ def check(
         options = policy, folder is not None, categories, reading, others, seed, methods or UNCHOSEN
         planned = make_plan(documents, engines, loaded, *options)
         if refuse:
-            for line in chain.from_iterable(to_run(planned, {}).refused.values()):
+            for line in to_run(planned, {}).errors:
                 refuse(line)
         with _executor(policy, workers, timeout, scheduler, wait) as executor:
             if journal:
@@ -213,14 +213,14 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     """The run that consists of a plan and of the findings of completed tasks, by task number."""
     done = [findings[number] for number in sorted(findings)]
     notes = [note for each in done for note in each.notes]
-    refused = dict(planned.refused)
+    refused = {(each.document, each.library): each.faults for each in planned.refused}
     for number in sorted(findings):
         if lines := findings[number].errors:
-            file = planned.tasks[number].subject
+            file = planned.tasks[number].subject, ""
             refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
     # If only a library for comparison cannot read a document, the document's faults become notes.
     for document, library in product(planned.contents, planned.compared):
-        lines = refused.pop(f"{document} with {library}", ())
+        lines = refused.pop((document, library), ())
         notes += [(line, document) for line in lines]
     version = planned.software.get("MaterialX")
     if version and (warning := untested(version)):
@@ -237,7 +237,11 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     )
     shared = {each.name: getattr(planned, each.name) for each in fields(Scope)}
     return Run(
-        **shared | {"refused": refused, "unjudged": tuple(dict.fromkeys(unjudged))},
+        **shared
+        | {
+            "refused": tuple(Refused(name, lines, by) for (name, by), lines in refused.items()),
+            "unjudged": tuple(dict.fromkeys(unjudged)),
+        },
         hosts=hosts,
         results=tuple(result for each in done for result in each.results),
         pictures=tuple(picture for each in done for picture in each.pictures),

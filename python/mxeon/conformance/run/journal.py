@@ -30,7 +30,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import BINARY, below, regular, replacing, sync
 from mxeon.io.records import UNREADABLE
 
-FORMAT = 9
+FORMAT = 10
 JOURNAL = "journal/items.jsonl"
 REPORTS = (RESULTS, JUNIT, PAGE)
 PREVIOUS, LOCK = "previous_run", ".journal.lock"

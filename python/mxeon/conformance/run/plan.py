@@ -28,7 +28,15 @@ from mxeon.conformance import backends, checks
 from mxeon.conformance import shader_functions as functions
 from mxeon.conformance.diagnosis.regions import unreached
 from mxeon.conformance.release import RELEASE
-from mxeon.conformance.results import SHADER_FUNCTIONS, SOURCE, Picture, Region, Result, Scope
+from mxeon.conformance.results import (
+    SHADER_FUNCTIONS,
+    SOURCE,
+    Picture,
+    Refused,
+    Region,
+    Result,
+    Scope,
+)
 from mxeon.conformance.results.known_issues import RENDERER_NODES
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs import ALL as ALL_SPECS
@@ -62,7 +70,7 @@ class Reading(NamedTuple):
 
     contents: dict[str, tuple[str, ...]]
     unreached: dict[str, dict[str, tuple[Region, ...]]]
-    refused: dict[str, tuple[str, ...]]
+    refused: tuple[Refused, ...]
 
 
 def read_documents(
@@ -93,18 +101,23 @@ def read_documents(
                     if node.has(mode) and (node.film or not isinstance(spec, microfacets.FilmSpec)):
                         regions = set(unreached(dict(node.values)))
                         titles[file].setdefault(spec.title, regions).intersection_update(regions)
-    refused: dict[str, tuple[str, ...]] = {}
-    for (file, library), lines in faults.items():
-        if all((file, each) in faults for each in libraries):
-            refused[file] = tuple(dict.fromkeys((*refused.get(file, ()), *lines)))
+    refused: list[Refused] = []
+    for file in dict.fromkeys(file for file, _ in faults):
+        lines_by_library = {name: lines for (each, name), lines in faults.items() if each == file}
+        if lines_by_library.keys() >= set(libraries):
+            every_line = dict.fromkeys(chain.from_iterable(lines_by_library.values()))
+            refused.append(Refused(file, tuple(every_line)))
         else:  # another library can read the file
-            refused[f"{file} with {library}"] = tuple(f"{line} (with {library})" for line in lines)
+            refused += [
+                Refused(file, tuple(f"{line} (with {library})" for line in lines), library)
+                for library, lines in lines_by_library.items()
+            ]
     unreached_by_file = {
         file: {title: tuple(sorted(each, key=repr)) for title, each in found.items() if each}
         for file, found in titles.items()
     }
     contents = {file: tuple(each) for file, each in titles.items()}
-    return Reading(contents, unreached_by_file, refused)
+    return Reading(contents, unreached_by_file, tuple(refused))
 
 
 def _nodes(
@@ -270,7 +283,7 @@ def make_plan(
     MaterialX is too old.
     """
     assert_known_names(hosts, nodes)
-    reading = reading or Reading({}, {}, {})
+    reading = reading or Reading({}, {}, ())
     libraries = tuple(dict.fromkeys(map(library_name, libraries)))
     hosts = tuple(dict.fromkeys(hosts))
     tasks: list[Task] = []
@@ -279,8 +292,12 @@ def make_plan(
     everywhere = bool(files and not nodes) or len(libraries) > 1
     for library in libraries:
         # A file is refused if the file cannot be read with this library.
-        names = ((str(file), f"{file} with {library}") for file in files)
-        readable = [each[0] for each in names if reading.refused.keys().isdisjoint(each)]
+        names = map(str, files)
+        readable = [
+            name
+            for name in names
+            if not any(each.concerns(name, library) for each in reading.refused)
+        ]
         paths = list(map(Path, readable)) if files else _examples(library)
         documents += map(str, paths)
         tasks.append(Task(SOURCE, EVERY_NODE, SOURCE, library))
