@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Backends, which are classes that evaluate a MaterialX node on a rendering engine.
+"""Classes that evaluate a MaterialX node on a rendering engine.
 
 Some engines evaluate arbitrary pairs of directions. Other engines return closures, render one pair
 of directions per pixel, or render pictures of a sphere. A backend draws the samples and adds the
@@ -67,7 +67,7 @@ class Backend(ABC):
     """A base class for evaluating one node on an engine."""
 
     abilities: ClassVar[Ability]  # supported kinds of nodes and checks
-    # Kinds of states, such as "lights". The check `states` uses only the first state of each kind.
+    # Kinds of states, such as "lights", for which the check `states` only uses the first state.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
     fewer: ClassVar[Counts | None] = None  # counts for specs that would draw more pairs
@@ -128,7 +128,7 @@ class Backend(ABC):
         return self.spec
 
     def take(self, draw: Callable[[Counts], T]) -> T:
-        """The samples that a method of the spec draws. Each method is called once per backend."""
+        """The result of `draw`, a method of the spec. Each method is called once per backend."""
         if draw.__qualname__ not in self._drawn:
             self._drawn[draw.__qualname__] = draw(self.counts)
         return cast(T, self._drawn[draw.__qualname__])
@@ -190,7 +190,7 @@ class Backend(ABC):
         return samples.float32(wo), samples.float32(wi), judged
 
     def pixels(self, scene: Scene) -> Mask:
-        """A mask of the pixels that show the sphere's points."""
+        """A mask of the pixels that show the sphere."""
         return sphere(scene.size).mask
 
     def portrait(self, scene: Scene) -> tuple[Array, Array, Mask, Mask]:
@@ -203,14 +203,11 @@ class Backend(ABC):
 
     @abstractmethod
     def albedo(self, batch: Batch, irradiance: NDArray[np.float32] | None = None) -> Array:
-        """Values in an environment, (N, 3), by default in a uniform environment."""
+        """Values in an environment, (N, 3). The default environment is uniform."""
 
 
 def isotropic(batch: Batch) -> Batch:
-    """A batch without anisotropy, because prefiltered light has a single roughness.
-
-    The two alphas are replaced by their geometric mean.
-    """
+    """Replace both alphas by their geometric mean, because prefiltered light has one roughness."""
     inputs: dict[str, Array] = {}
     for name, value in batch.inputs.items():
         if name == "roughness" and np.shape(value)[-1:] == (2,):
@@ -274,7 +271,7 @@ class Evaluating(Backend):
         return self.evaluate(batch, branch, "throughput")
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        """Environment light through the surface, (N, 3), by default from a uniform environment."""
+        """Environment light through the surface, (N, 3). The default environment is uniform."""
         return self.evaluate(batch, "transmission", irradiance=radiance)
 
     @cached_property
@@ -328,7 +325,7 @@ class Evaluating(Backend):
 
 
 class Media(Evaluating):
-    """A backend for media, and for nodes without values, which only need an implementation."""
+    """A backend for media, and for nodes that are only checked for an implementation."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 
@@ -338,17 +335,17 @@ class Media(Evaluating):
 # Few pairs suffice, because the models compute the values of closures. More pairs would only test
 # the models.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
-SOME = 1 << 8  # maximum number of pairs of each kind, except random pairs
-# The models round to float64, by at most 2^-53. The sharpest lobe, with alpha 1e-4, amplifies this
-# error by 1e8, to less than one float32 rounding.
+SOME = 1 << 8  # maximum number of special pairs of each kind
+# The sharpest lobe (alpha 1e-4) amplifies a float64 rounding, 2^-53, by 1e8. The product is less
+# than one float32 rounding, 2^-24.
 ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
-# An input passes through up to 16 roundings before it is an argument of a closure. The logarithm of
-# a microfacet distribution has a slope of at most 4.
+# Each input is rounded up to 16 times before a closure receives the value. A microfacet
+# distribution amplifies a relative error by at most 4.
 GRAPH = sum_of(roundings(4 * 16, "16 from an input to an argument, times the slope 4"))
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
-    """A batch with the pairs of all batches, whose inputs must have the same names."""
+    """One batch with the pairs of all batches. All batches must have inputs of the same names."""
     if len(batches) == 1:
         return batches[0]
     wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
@@ -435,13 +432,13 @@ class Closures(Evaluating):
 
     @property
     def unset(self) -> tuple[str, ...]:
-        """Normals and tangents of a surface shader, unsupported because all lobes share a frame."""
+        """A surface shader's normals and tangents cannot be set, because its lobes share a frame."""
         names = self.spec.names if Ability.MATERIAL in self.spec.requires else ()
         return tuple(each for each in names if each.endswith(("normal", "tangent")))
 
 
 class Functions(Evaluating):
-    """A host without transmission, which compiles functions for values and fitted albedos."""
+    """A host that compiles functions for values and fitted albedos, but not for transmission."""
 
     abilities = Evaluating.abilities & ~(
         Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.TRANSMISSION
@@ -472,18 +469,18 @@ SMOOTH = ("eon", "qon", "burley")  # models without a sharp lobe at any roughnes
 # Smallest product of the sine and the cosine of the angle between a view and the normal.
 OBLIQUE = 0.25
 FEW_RENDERED = Counts(1 << 12, 1 << 10, 1 << 9, albedos=8, materials=16, nodes=32, mirrored=1 << 10)
-FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # stated in OpenImageIO's source
-POINT = 3.0 * EYE / NEAREST  # 3 roundings of numbers up to 40, divided by the light's distance 1/2
+FAST_ARC_COSINE = Term(4.6e-5, "OpenImageIO's fast arc cosine")  # number from OpenImageIO's source
+POINT = 3.0 * EYE / NEAREST  # 3 roundings of coordinates up to 40, divided by a distance of 1/2
 FLAT_SLOPE = 8.0  # largest slope of the diffuse models, per radian
-# Largest slope of a microfacet lobe, per radian. The slope is the sum of 2 divided by the smallest
-# alpha, for the distribution, and 3, for Fresnel and shadowing.
+# Largest relative slope of a microfacet lobe, per radian. The distribution contributes 2 / alpha.
+# Fresnel and shadowing contribute 3.
 SHARP_SLOPE = 2.0 / samples.LEAST_TURNED + 3.0
 FLAT, SHARP = (
     sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
-# Error of the light's direction in radians. A ray is up to JITTER pixels beside a pixel's center.
-# On a surface at the smallest cosine, RIM, this distance is divided by RIM.
+# Error of the light's direction, in radians. A ray misses a pixel's center by up to JITTER pixels,
+# so the point on a surface at the smallest cosine, RIM, moves by up to JITTER * PIXEL / RIM.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
 DISPLACED = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
@@ -493,7 +490,7 @@ BELOW = sum_of(
     roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
     FAST_ARC_COSINE,
 )
-VIEWS, PIXELS = 8, 1 << 12  # numbers of views per case, and of pixels that the views share
+VIEWS, PIXELS = 8, 1 << 12  # number of views per case, and number of pixels shared by all views
 MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
 NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
 PASSED = single(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
@@ -523,7 +520,7 @@ class RenderablePairs(Evaluating):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """The views of a few pairs, because all views share a fixed number of light paths."""
+        """Few views, because a fixed number of light paths is divided among all views."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
@@ -565,7 +562,7 @@ class Rendered(RenderablePairs):
     variants: ClassVar[Mapping[str, tuple[Variant[Scattering], ...]]] = BSDL_VARIANTS
     flat: ClassVar[Tolerance] = FLAT
     sharp: ClassVar[Tolerance] = SHARP
-    place: ClassVar[Tolerance | None] = None  # error of microfacets due to the pixel position
+    place: ClassVar[Tolerance | None] = None  # error of microfacet lobes due to the pixel position
 
     def judged(self) -> Spec:
         return _with_variants(type(self), self.spec)
@@ -594,7 +591,7 @@ class Rendered(RenderablePairs):
 
 
 class Traced(Rendered):
-    """Cycles, which computes lighting with its own closures, for all but rough diffuse nodes."""
+    """Cycles with its own closures, for all nodes except rough diffuse nodes."""
 
     abilities = Ability.LOBE | Ability.COMBINATION | Ability.PAIRS
     variants = CYCLES_VARIANTS
@@ -602,7 +599,7 @@ class Traced(Rendered):
 
 
 class LobesBelow(RenderablePairs):
-    """The diffuse lobe of a surface shader, which lies below other lobes; see SurfaceLobe."""
+    """The diffuse lobe of a surface shader, covered by the other lobes; see `SurfaceLobe`."""
 
     abilities = Ability.BELOW | Ability.LIGHT
     all_samples = True
@@ -627,13 +624,13 @@ class LobesBelow(RenderablePairs):
 
 
 class RenderedLobes(LobesBelow):
-    """Diffuse lobes below other lobes, rendered by testrender."""
+    """The diffuse lobe of a surface shader, rendered by testrender."""
 
     engine_errors: ClassVar[Errors] = {"value": BELOW}
 
 
 def diffuse_alone(evaluate: Callable[[Batch], Array], batch: Batch) -> Array:
-    """The diffuse lobe of a surface shader, after removing other lobes; see SurfaceLobe."""
+    """The diffuse lobe of a surface shader without the other lobes; see `SurfaceLobe`."""
     above = evaluate(batch.altered(color=samples.BLACK))
     lambert = evaluate(batch.altered(color=samples.WHITE, roughness=0.0)) - above
     with np.errstate(divide="ignore", invalid="ignore"):  # a shader that returns 0 causes 0 / 0
@@ -656,8 +653,8 @@ HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead 
 # Relative error of a lobe per radian of error in a direction. A microfacet distribution contributes
 # 2 / alpha, where alpha is at least 0.4. Fresnel, shadowing and the cosine contribute 3.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
-# Each of two cosines has five roundings. A diffuse value contains a cosine's error 22 times: 20
-# times in the ratio s / t, because t is at least 0.05, once in s, and once in the cosine factor.
+# Each of two cosines has five roundings. Oren and Nayar's model amplifies a cosine's error by up to
+# 22, which is 1 / 0.05 = 20 in the ratio s / t, 1 in s, and 1 in the factor cos(theta_i).
 TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
 EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
@@ -672,9 +669,9 @@ FOUR_PICTURES = Term(
 )
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
-# A pixel's point is the sum of a ray's origin and the ray. The origin and the ray have lengths of
-# up to 2, so that each of three roundings is at most 2^-23. Grazing views divide the error by
-# cos(theta_o). A relative error is also divided by cos(theta_i).
+# The point in a pixel is a ray's origin plus a vector along the ray. Both vectors have lengths up
+# to 2, so each of three roundings is at most 2^-23. At grazing views, the error of the point grows
+# by 1 / cos(theta_o). At grazing light, the relative error of a value grows by 1 / cos(theta_i).
 CYCLES_RAY = sum_of(
     roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
     Term(1e-5, "a roughness that counts as 0"),
@@ -683,7 +680,7 @@ CYCLES_RAY = sum_of(
 )
 # The noise was measured at 256 samples per pixel, with seeds 0 to 15, roughness 1 and reflectance
 # 1. The rms error of a pixel is 1.3e-3. The rms error of the mean of 3212 pixels is 3.1e-5, which
-# is 1.34 times the error of the mean of independent pixels.
+# is 1.34 times the error expected for independent pixels.
 CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4"
 CYCLES_NOISE = sum_of(
     Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836), CYCLES_MEAN),
@@ -726,7 +723,7 @@ class Pictures(Backend):
 
 
 class Spheres(Pictures):
-    """One picture per light and material. The samples are lit points far from the rim."""
+    """One picture for each light and material. The samples are lit points far from the rim."""
 
     scenes: ClassVar[tuple[Scene, ...]] = (SIDE, FRONT, BACK)
     all_samples = True
@@ -757,7 +754,7 @@ class Spheres(Pictures):
 def _compile(host: Host, text: str, library: str, methods: Methods) -> Shader:
     from mxeon.shaders.generation import ApproximationWarning  # this import loads MaterialX
 
-    with warnings.catch_warnings():  # pairs with approximations are not judged
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore", ApproximationWarning)
         return host.compile(text, library=library, methods=methods)[0]
 
@@ -775,7 +772,7 @@ def picture_pairs(scene: Scene) -> Pairs:
 
 
 def lit_pairs(normal: Array, scene: Scene) -> Pairs:
-    """Directions at points with these normals in a picture, and a mask of the points to judge."""
+    """Directions at points of a picture with given normals, and a mask of the points to judge."""
     wo = scenes.local_directions(normal, scenes.VIEW)
     wi = wo if scene.light is None else scenes.local_directions(normal, scene.light)
     return wo, wi, (wo[:, 2] >= RIM) & (wi[:, 2] >= RIM)
@@ -792,10 +789,7 @@ class CyclesPictures(Spheres):
     }
 
     def points(self, scene: Scene) -> Pairs:
-        """Pairs of directions, and a mask of pairs for which the closure of Cycles is the model.
-
-        For some models, the azimuths of light and view must differ by at most 90 degrees.
-        """
+        """Skip back-lit pairs if Cycles uses a different model for back-lit pairs."""
         wo, wi, mask = super().points(scene)
         if front_lit_only(self.host.name, self.spec.model):
             mask = mask & (np.sum(wo[:, :2] * wi[:, :2], axis=1) >= 0.0)
@@ -837,7 +831,7 @@ class Half(Drawn):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        """Omit the tolerance of albedos of pbrlib nodes, because Storm samples other directions."""
+        """Omit albedos of pbrlib nodes, because Storm samples environments in its own way."""
         errors = super().errors(spec)
         return {**errors, "albedo": None} if Ability.LOBE in spec.requires else errors
 
@@ -858,13 +852,13 @@ PICTURE_RADIANCE = sum_of(
 
 
 class DarkPictures(Pictures):
-    """One picture per material of an emitting surface. The scene has no other light."""
+    """One picture for each material of an emitting surface, in a scene without other light."""
 
     abilities = Ability.SURFACE | Ability.LIGHT
 
 
 class Frames(Pictures):
-    """Pictures that a shader's complete main() function draws with a client's bindings."""
+    """Pictures drawn by a shader's complete main() function with a client's bindings."""
 
     abilities = Ability.CLIENT | Ability.LIGHT
 
@@ -896,8 +890,8 @@ class UtilityOsl(Evaluating):
         return {**spec.errors, "value": spec.errors.get("osl_value", spec.errors["value"])}
 
 
-# Backends by a host's way of evaluating nodes. The first backend that supports a spec evaluates the
-# spec. `mxeon.survey` adds backends for renderers with their own materials.
+# Backends for each way in which hosts evaluate nodes. The first backend that supports a spec is
+# used. `mxeon.survey` adds backends for renderers with their own materials.
 BACKENDS: dict[str, tuple[type[Backend], ...]] = {
     "pairs": (Evaluating, LobesBelow, DarkPictures, Frames),
     "closures": (Closures,),

@@ -46,7 +46,7 @@ def contents(value: object) -> Hashable:
 
 
 def remembered(function: Callable[[Batch], Array]) -> Callable[[Batch], Array]:
-    """A function that returns the same values and caches the values of small batches."""
+    """The given function, with a cache for the values of small batches."""
     cache = Recent[Array](KEPT)
 
     def cached(batch: Batch) -> Array:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A case is a node on an engine with a library, with measured and expected values.
+"""A case evaluates a node of a library on an engine, for comparison with expected values.
 
-A negative control is the same case with wrong inputs or outputs.
+A negative control is a case with deliberately wrong inputs or outputs.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ ROUNDED = 64 * ROUNDING
 
 @lru_cache(maxsize=6)  # three quantities of two specs: a case's spec and a related spec
 def model_values(spec: Spec, quantity: str) -> Callable[[Batch], Array]:
-    """The model's function for a quantity, with a cache of its values."""
+    """The model's function for a quantity, with a cache of values."""
     return cache.remembered(getattr(spec, quantity))
 
 
@@ -166,7 +166,7 @@ def values(case: Case) -> Iterator[Compared]:
 
 
 def albedos(case: Case) -> Iterator[Compared]:
-    """Values in an environment, and the expected albedo or MaterialX's fit of the albedo."""
+    """Values in an environment, compared with the albedo or with MaterialX's fit of the albedo."""
     spec, fitted = case.spec, case.backend.prefiltered
     for batch in case.views:
         if fitted and isinstance(spec, microfacets.FacetSpec):
@@ -177,7 +177,7 @@ def albedos(case: Case) -> Iterator[Compared]:
 
 
 def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
-    """Throughputs of a layer in some kinds of light. The expected throughput is 1 - albedo."""
+    """Throughputs of a layer for given kinds of light. The expected throughput is 1 - albedo."""
     for branch, batch in product(branches, case.views):
         yield Compared(batch, case.throughput(batch, branch), case.expected_throughput(batch))
 
@@ -185,7 +185,7 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 def frames(case: Case) -> Iterator[Compared]:
     """Values in rotated and unrotated frames. Half of the normals point away from the viewer."""
     turned = case.backend.turned
-    # A sum over the environment is slow. Every fifth pair still covers both sides of the surface.
+    # Use a fifth of the pairs, because sums over the environment are slow.
     subset = turned.where(slice(None, None, 5))
     outputs = [(case.direct, turned), (case.albedo, subset)]
     for each in case.spec.inputs:
@@ -216,7 +216,7 @@ def unchanged(before: Array, after: Array) -> NDArray[np.bool_]:
 
 
 def edge_values(case: Case) -> Compared:
-    """Values and albedos at the edges of the domain, which must be 0."""
+    """Values and albedos at the edges of the domain, which must be finite."""
     batch = case.backend.edges
     values = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
     return Compared(batch, values, np.zeros_like(values))

@@ -13,7 +13,7 @@ from mxeon.conformance.samples import Array, Batch
 
 @dataclass(frozen=True)
 class Control:
-    """A mistake that a check must catch, as a description and a function that adds it to a case."""
+    """A mistake that a check must catch: a description, and a function that makes the mistake."""
 
     words: str
     make: Callable[[Case], Case]

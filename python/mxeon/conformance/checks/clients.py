@@ -57,7 +57,7 @@ def same(frame: Frame) -> Frame:
 
 
 def premultiplied(frame: Frame) -> Frame:
-    """A frame without an environment; from MaterialX 1.39.5, mixes can scale lobes' weights."""
+    """A frame without an environment. From MaterialX 1.39.5, mixes scale the weights of lobes."""
     from mxeon.shaders.options import offers
 
     methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)
@@ -146,7 +146,7 @@ def lamp_light(lamp: Lamp, position: Array) -> tuple[Array, Array]:
 
 
 def shadow(client: Client, position: Array) -> Array:
-    """Fraction of the first light that is not shadowed at each position, (N, 1)."""
+    """Fraction of the first light that the shadow map passes to each position, (N, 1)."""
     x = np.insert(position, 3, 1.0, axis=1) @ np.reshape(client.shadow, (4, 4))
     mean, square = client.moments
     behind = np.maximum(0.5 + 0.5 * x[:, 2:3] / x[:, 3:] - mean, 0.0)

@@ -37,8 +37,8 @@ from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
 LEAST_LIGHT = 0.01  # smallest albedo by which light of an uneven environment is divided
-# Error of a lookup direction in radians. Texels of the environment map have sides of pi / 128 and
-# are read at texel centers, and engines filter textures with 8-bit weights.
+# Error of a lookup direction, in radians, because engines filter textures with 8-bit weights. The
+# diagonal of a texel is sqrt(2) pi / 128.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
 # Largest error of an engine's arc sine, in radians, measured for the software rasterizer llvmpipe.
 # Other engines are ten times as accurate.
@@ -238,7 +238,7 @@ def energy(case: Case) -> Compared:
 
 
 def summed(case: Case, batch: Batch, weights: Array) -> tuple[Batch, Array]:
-    """Views, and albedos for these views, (N, 3), as weighted sums over many light directions."""
+    """Views, and albedos (N, 3) of the views, computed as weighted sums over light directions."""
     count, nodes = weights.shape
     values = case.direct(batch).reshape(count, nodes, 3)
     albedo = (weights[..., np.newaxis] * values).sum(axis=1)
@@ -276,7 +276,7 @@ def in_region(key: str, case: Case) -> Compared:
 
 
 def explain_region(key: str, case: Case) -> Diagnosis:
-    equal = set(FORMS) - {REGIONS[key].form, TILTED}  # variants equal to the model here
+    equal = set(FORMS) - {REGIONS[key].form, TILTED}  # variants that equal the model in this region
     candidates = [each for each in case.valued.value_candidates if each.title not in equal]
     compared = region_values(key, case)
     brightest = min(float(compared.expected.max()), 1.0)
@@ -310,7 +310,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, visible = np.arange(len(views.wo))[:, np.newaxis], {}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # microfacets peak here
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peaks of microfacets
     for name in {"weight", "occlusion"} & views.inputs.keys():
         visible[name] = np.maximum(views.inputs[name], LEAST_WEIGHT)
     views = replace(views, wo=wo, wi=wi).altered(**visible)
@@ -372,10 +372,10 @@ def unsigned(batch: Batch) -> Batch:
 def negative(case: Case) -> Iterator[Compared]:
     """Check the light for colors whose red channel is negative.
 
-    Some nodes treat negative red as 0. For other nodes, the red light is the negative of the light
-    for the opposite, positive red. The light of EON is a rho + b rho^2 / (1 - rho (1 - <E>)), where
-    <E> is the average albedo of FON. The coefficients a and b follow from the light for rho and the
-    light for rho / 2.
+    Some nodes treat negative red as 0. For other nodes, a change of red's sign only changes the
+    sign of the red light. The light of EON is a rho + b rho^2 / (1 - rho (1 - <E>)), where <E> is
+    the average albedo of FON. The coefficients a and b follow from the light for rho and the light
+    for rho / 2.
     """
     quantities = [(case.backend.direct, case.direct)]
     if not family(HairSpec)(case.spec):  # MaterialX computes hair's albedo from unclamped tints

@@ -47,7 +47,7 @@ if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Shader
 
 PAIRS = 1 << 12  # number of pairs near the mirror direction
-RATIO_INDEX = 1.2  # smallest IOR of dielectrics in comparisons of ratios
+RATIO_INDEX = 1.2  # smallest IOR of dielectrics in the check `shape`
 # A lobe whose published Schlick curve is negative for some facets. Without a clamp, the albedo of
 # the lobe is -0.035.
 DIP: Values = {"color0": (0.06,) * 3, "color82": samples.BLACK, "color90": samples.WHITE}
@@ -129,10 +129,10 @@ def anisotropy(case: Case) -> Compared:
 
 
 def reflected_sky(case: Case) -> Iterator[Compared]:
-    """Mean of the sky weighted by a mirror lobe, and by a retroreflective lobe for a mirrored view.
+    """Reflection of the sky by a lobe, compared with the mean of the sky weighted by the lobe.
 
-    A mean is the light of an uneven sky divided by the light of a uniform sky, so constant factors
-    of the lobe cancel.
+    The light of an uneven sky is divided by the light of a uniform sky, so constant factors of the
+    lobe cancel. At a mirrored view, the retroreflective lobe must have the same mean.
     """
     spec = case.of(FacetSpec)
     views = case.backend.take(spec.stretched)[0].first(8)
@@ -149,7 +149,7 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
 
 
 def diagnose_sky(case: Case) -> Diagnosis:
-    """Find out whether the mirror lobe is wrong, or only the retroreflective lobe."""
+    """Find out whether all reflection is wrong, or only retroreflection."""
     if case.tolerance("sky").wrong(next(reflected_sky(case))).any():
         return defect("other_directions")
     return defect("retroreflective_environment")
@@ -235,9 +235,9 @@ def with_directions(spec: Spec, methods: Methods) -> bool:
 
 
 def diagnose_transmitted(case: Case) -> Diagnosis:
-    """Test whether the light is the mean of 1 - F, or this mean divided by G_1 as in MaterialX.
+    """Test whether transmitted light is the mean of 1 - F, or is that mean divided by G_1.
 
-    The diagnosis also reports values that are not finite.
+    MaterialX divides by G_1. The diagnosis also reports values that are not finite.
     """
     compared, functions = list(transmitted(case)), case.of(TransmissionSpec).functions
 
@@ -262,11 +262,11 @@ def diagnose_transmitted(case: Case) -> Diagnosis:
 
 
 def transmitted(case: Case) -> Iterator[Compared]:
-    """Compare light that passes from a uniform environment through the surface with two limits.
+    """The light through the surface, from a uniform environment, must be between two limits.
 
     One limit is the light that the BTDF passes without compensation. The other limit is all light
-    that is not reflected. Tint and weight scale both limits. The BTDF's limit is the larger limit
-    for some Schlick curves whose reflection the shader overcompensates.
+    that is not reflected. The second limit may be below the first limit for some Schlick curves,
+    because compensation reflects too much light.
     """
     spec = case.of(TransmissionSpec)
     for batch in case.views:
@@ -276,7 +276,7 @@ def transmitted(case: Case) -> Iterator[Compared]:
 def limited(spec: TransmissionSpec, batch: Batch, measured: Array, opaque: bool) -> Compared:
     """Transmitted light, compared with the nearest value between the limits of `transmitted`.
 
-    If opacity replaces refraction, a lobe in mode T passes all light, times the tint.
+    If opacity replaces refraction, a lobe in mode T passes the tint times all light.
     """
     if opaque and not spec.reflects:
         return Compared(batch, measured, batch.strength * spec.functions.tint(batch.inputs))
@@ -295,7 +295,7 @@ CLIENT = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 
 
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
-    """For the generator methods of each known client, compare the light with the correct light."""
+    """Check the light for each set of generator methods that a known client uses."""
     transmits = TRANSMITTING(case.spec)
     if transmits:  # methods of the clients Storm and MaterialXView
         clients = [Methods("prefilter", "opacity"), Methods("prefilter", "refraction")]
@@ -318,13 +318,13 @@ def transmitted_to_client(case: Case, evaluate: Evaluate, methods: Methods) -> I
         light = case.outputs(batch, evaluate(case.inputs(batch), "transmission", client=CLIENT))
         if not opaque:
             light = light / CLIENT.intensity
-            if "tint" in batch.inputs:  # two-sided: tinted on entry and on exit
+            if "tint" in batch.inputs:  # a two-sided environment tints light on entry and on exit
                 batch = batch.altered(tint=np.square(batch.inputs["tint"]))
         yield limited(case.of(TransmissionSpec), batch, light, opaque)
 
 
 def reflected_to_client(case: Case, evaluate: Evaluate, methods: Methods) -> Iterator[Compared]:
-    """Compare throughput, light from a white mirror, and reflection of a turned environment.
+    """Check the throughput, the light of a white mirror, and a turned environment's reflection.
 
     A white mirror reflects all light. If the shader reads albedos from a table, the reflected share
     may also be the ratio of the tabulated albedo to the exact albedo.
@@ -371,7 +371,7 @@ def diagnose_methods(case: Case) -> Diagnosis:
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Compare mode RT with mode R, and mode T with no reflection; yield the cause of each error."""
+    """Compare mode RT with mode R, and mode T with 0. Each comparison has a cause to report."""
     spec = case.of(TransmissionSpec)
     mode_R = case.another(spec.reflection) if spec.reflects else None
     unlike = "_unlike_R" if mode_R else ""
@@ -477,7 +477,7 @@ def rough_refraction(case: Case) -> Compared:
 
 
 def through_sphere(wo: Array, index: Array, facet: Array) -> Array:
-    """Directions, (N, 3), in which view rays leave a solid sphere that the rays enter at a facet.
+    """Directions, (N, 3), in which view rays leave a solid sphere after entering at a facet.
 
     A ray meets the far side of the sphere at the same angle, so the two refractions turn the ray by
     equal angles. The leaving ray is the incoming ray, rotated by 180 degrees about the inner ray.
@@ -517,7 +517,7 @@ def wrong_inputs(case: Case) -> list[str]:
 # --- thin films -----------------------------------------------------------------------------------
 
 Function = Callable[[Batch], Array]
-ROUGHNESSES = (1.0, 0.3)  # alphas at which compensation is large and small
+ROUGHNESSES = (1.0, 0.3)  # alphas with strong and with weak compensation
 # Alphas that need almost no compensation, so that shaders may average F over fewer cosines.
 SMOOTH = (0.04, 0.005)
 LEAST_F = 0.01  # films with a smaller F are not compared
@@ -525,9 +525,9 @@ THIN_LIMIT = 1e-3  # thickness in nm at which a film must have no effect
 
 
 def curves(films: microfacets.Films, case: Case) -> Compared:
-    """F of films: values in the mirror direction, divided by the values of a perfect mirror.
+    """F of films, which is the value in the mirror direction divided by a perfect mirror's value.
 
-    The lobes are so smooth that the factor of the compensation is 1 for any F_ss.
+    The lobes are so smooth that compensation has no effect.
     """
     batch = film_views(case.of(FilmSpec), films)
     mirror = mirror_of(case, batch)
@@ -539,8 +539,8 @@ def film_limit(case: Case) -> list[Compared]:
     """Values under films of IOR 1 or less, or of thickness THIN_LIMIT, compared with bare lobes.
 
     A film with an IOR below 1 must equal a film with IOR 1, even if the film with IOR 1 is wrong.
-    For a thin film, the equations themselves deviate, because the tabulated sensitivities of the
-    eye have five digits and do not add up to exactly 1. This deviation is accepted.
+    For a thin film, even the equations deviate, because the tabulated sensitivities of the eye have
+    five digits and do not add up to exactly 1. This deviation is accepted.
     """
     # Remove the dip of Schlick's curve, because a negative F counts as 0 under a film. Compare near
     # the mirror direction and with equal alphas, because another check covers two alphas.
@@ -550,7 +550,7 @@ def film_limit(case: Case) -> list[Compared]:
     bare = case.direct(without)
     vacuum, below_1 = (case.direct(batch.altered(thinfilm_ior=index)) for index in (1.0, 0.5))
     cases = [Compared(batch, vacuum, bare), Compared(batch, below_1, vacuum)]
-    if "color0" not in batch.inputs:  # a film changes the angle in Schlick's curve
+    if "color0" not in batch.inputs:  # even a thin film changes the angle in Schlick's curve
         thin = batch.altered(thinfilm_thickness=THIN_LIMIT)
         deviation = case.expected(thin) - case.expected(without)
         cases.append(Compared(batch, case.direct(thin), bare + deviation))
@@ -564,7 +564,7 @@ def film_energy(case: Case) -> Iterator[Compared]:
 
 
 def diagnose_average(case: Case) -> Diagnosis:
-    """Test for a missing k, and for F at one cosine, or a mean of F0 and F90, in place of F_ss."""
+    """Test whether k is missing, or whether F_ss is F at one cosine or a mean of F0 and F90."""
     batch, measured, expected = film_average(case)
     (_, k), (_, expected_k) = (
         film_factors(case, value, batch, 1.0) for value in (case.direct, case.expected)
@@ -633,8 +633,8 @@ def visible(films: microfacets.Films, case: Case) -> Compared:
 def film_brushed(case: Case) -> Compared:
     """Albedos of lobes with two alphas under films, divided by the albedo of a perfect mirror.
 
-    The comparison is skipped if the check `film_visible` fails, because some formulas that the
-    specification permits for films would fail here. `film_visible` judges such formulas.
+    The comparison is skipped if the check `film_visible` fails, because some permitted formulas for
+    films fail both checks.
     """
     tolerance = case.tolerance("film_visible")
     if not case.control and tolerance.wrong(visible(microfacets.STEEP, case)).any():
@@ -646,7 +646,7 @@ def film_brushed(case: Case) -> Compared:
 def averages(case: Case, value: Function, batch: Batch) -> tuple[Array, Array]:
     """F at the half vector, and F_ss, (N, 3) each, from values in the mirror direction.
 
-    The lobes have two roughnesses, because F and F_ss are two unknowns.
+    Two roughnesses are measured, because F and F_ss are two unknowns.
     """
     (first, k), (second, other_k) = (film_factors(case, value, batch, a) for a in ROUGHNESSES)
     F = (second * k - first * other_k) / (k - other_k)

@@ -71,8 +71,7 @@ FUNCTIONS = {
 TARGETS = ("glsl", "essl", "vulkan", "slang")  # shader languages of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
 ANSWERS = cache.Recent[Array](64)  # cache shared by a check and the check's negative control
-# Views of a solid. From inside, many facets are below the critical angle at one view, and few
-# facets at another view. At the third view, no light leaves a smooth solid.
+# Views at which different numbers of facets transmit light from inside a solid.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 # Smallest value that must be sampled. Smaller values may be missed, because a sheen's fitted albedo
@@ -96,7 +95,7 @@ TRANSPARENT: dict[str, float | str] = {
 }
 WALLS = ("thin_walled", "geometry_thin_walled")
 
-# For each node, the name of the IOR input, and other inputs with values that make the node glass.
+# For each node, the name of the IOR input, and other inputs that make the node glass.
 # UsdPreviewSurface is missing, because that node's Schlick curve has no IOR for the denser side.
 GLASS: dict[str, tuple[str, Values]] = {
     "dielectric_bsdf": ("ior", {"tint": (0.9, 0.8, 0.7), "roughness": (0.4, 0.4)}),
@@ -112,8 +111,7 @@ INDEXED = (
     | check.family(combinations.CombinedSpec)
     | check.family(FacetSpec, lambda spec: "ior" not in spec.types or spec.types["ior"] == "float")
 )
-# For each node, inputs of clear glass of IOR INDEX, and inputs for the Fresnel curve with which the
-# glass reflects light from outside.
+# For each node, inputs of clear glass with IOR INDEX, and the Fresnel curve for light from outside.
 SOLIDS: dict[str, tuple[Values, dict[str, Array]]] = {
     "dielectric_bsdf": (
         {**GLASS["dielectric_bsdf"][1], "ior": INDEX},
@@ -211,7 +209,7 @@ def paths(
 def subjects(case: Case, *walls: bool) -> Iterator[tuple[Paths, Batch]]:
     """Path-tracing code of a node, and pairs of directions with individual frames and inputs.
 
-    A lobe has random inputs; a surface shader has inputs to which all lobes contribute. `walls`
+    A lobe has random inputs. A surface shader has inputs for which all lobes contribute. `walls`
     lists the wanted kinds of surface shader: False for a solid, True for a thin wall if supported.
     """
     if not is_shader(case.spec):
@@ -244,7 +242,7 @@ def is_shader(spec: Spec) -> bool:
 
 
 def random_materials(case: Case) -> tuple[Paths, Batch]:
-    """Random materials of a node; the inputs for normal and tangent differ from the surface's."""
+    """Random materials of a node whose normal and tangent inputs differ from the surface's."""
     spec, batch = case.lobe, case.backend.turned
     rng, count = generator(), len(batch.wo)
     frame: Values = {each.name: NORMAL for each in spec.inputs if each.type == "vector3"}
@@ -291,9 +289,8 @@ def scores(case: Case) -> Iterator[tuple[float, bool, Batch]]:
     """Deviations of samples from the stated density, per material and view.
 
     Each row has the deviation in standard deviations, whether the view is inside a solid, and a
-    batch with the view and the material. A surface shader has three views of a solid and of a thin
-    wall. A deliberately wrong case also has three views, because the first failure is enough.
-    Quadratures with few nodes cannot hide a failure, because errors increase the deviation.
+    batch with the view and the material. Quadratures with few nodes cannot hide a failure, because
+    quadrature errors only increase the deviation.
     """
     u = random(DRAWS, generator())
     for text, batch in subjects(case, False, True):
@@ -430,7 +427,7 @@ def path_emission(case: Case) -> Iterator[Compared]:
     spec = case.of(emission.EmissionSpec)
     permutations = np.stack([np.roll(np.eye(3), shift, axis=0) for shift in range(3)])
     for batch in (*case.batches, case.backend.take(spec.backs)):
-        if "normal" in batch.inputs:  # the axis of a cone is connected to another node
+        if "normal" in batch.inputs:  # skip cones, whose axis is a connected node
             continue
         frame = permutations[np.arange(len(batch.wo)) % 3]
         inputs = {**batch.inputs, "normal": frame[:, :, 2], "tangent": frame[:, :, 0]}
@@ -542,7 +539,7 @@ LOOKS = (
     (DRAWS, ORDERS[:4], 3.0),
     (DRAWS, ORDERS, 0.0),
 )
-CLOSE = 2.0  # largest difference of two quadratures of a patch, in expected samples
+CLOSE = 2.0  # largest difference between two quadratures of a patch, in samples
 MOST_DEVIATIONS = 6.0  # tolerance of the check `pdf`, in standard deviations
 CONE = 0.02  # angular width of the first ring of cells, in radians
 LEAST = 1e-7  # angle from the pole, in radians, up to which a density counts as constant
@@ -560,7 +557,7 @@ def deviation(
     """Deviation of samples from a density, in standard deviations of a chi-square test.
 
     A deviation below the expected noise counts as 0. If the density is NaN, the deviation is
-    infinite. The cube root of chi-square, divided by the degrees of freedom, is nearly normal
+    infinite. The cube root of (chi-square / degrees of freedom) is nearly normal
     [WilsonHilferty1931].
 
     - `draws`: Unit vectors, (N, 3), or zeros for lost samples. The expected share of lost samples
@@ -697,7 +694,7 @@ ROWS = (
               64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=diagnosis.defect("other_path_value"),
-          methods=lambda spec, methods: not methods.distributed),  # distribution changes sums above 1
+          methods=lambda spec, methods: not methods.distributed),
     PATHS(key="path_emission",
           claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
           applies=check.family(emission.EmissionSpec), measure=path_emission, tolerance="value",

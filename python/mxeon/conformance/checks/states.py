@@ -36,8 +36,8 @@ EACH = 12  # pixels per combination of states: three 2 x 2 squares in a picture 
 STEP = 0.05  # angle between neighboring pixels of a bent surface with radius 1, in radians
 VECTORS = ("normal", "tangent", "position", calls.SURFACE)
 FLAT = calls.NORMAL, calls.TANGENT, (0.0, 0.0, 0.0), calls.NORMAL
-# A pair of states is reported instead of a single state if the pixels in both states are fewer than
-# this share of the pixels in the single state.
+# A pair of states is reported instead of a single state if the pair occurs in less than this share
+# of the pixels that have the single state.
 CLEARER = 0.7
 Random = np.random.Generator
 Layout = tuple[tuple[int, ...], tuple[int, ...]]  # shape and axis order that rearrange pixels
@@ -87,7 +87,7 @@ def framed(
 ) -> Pixels:
     """Replace the frames by the result of `make`.
 
-    `along` moves views to the normal; `scaled` leans and scales tangents.
+    If `along`, views are along the normal. If `scaled`, tangents lean and are not unit vectors.
     """
     batch = pixels.batch
     assert batch.frame is not None
@@ -98,8 +98,8 @@ def framed(
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": float32(normal), "tangent": float32(tangent)}
     wo = np.broadcast_to(calls.NORMAL, batch.wo.shape) if along else batch.wo
-    # If normals are axes, do not turn an uneven environment: a normal may point to a pole of the
-    # map, where the azimuth of a turned direction depends on roundings.
+    # If normals are axes, do not turn an uneven environment, because a normal may point to a pole
+    # of the map, where the azimuth of a turned direction depends on roundings.
     client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
     batch = replace(batch.altered(**axes), wo=wo, frame=frame)
     return replace(pixels, batch=batch, client=client)
@@ -118,7 +118,7 @@ def on_axes(frames: Array, rng: Random) -> Array:
 
 
 def bent(pixels: Pixels, rng: Random, columns: float = 0.0, rows: float = 0.0) -> Pixels:
-    """Bend the surface in each square of pixels by `columns` and `rows`, in radians per pixel."""
+    """Bend each square of pixels by the angles `columns` and `rows`, in radians per pixel."""
     batch, pixel = pixels.batch, np.arange(EACH)
     assert batch.frame is not None
     first, column, row = pixel // 4 * 4, pixel % 2, pixel // 2 % 2
@@ -275,8 +275,8 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
         unsupported.add("inputs from an image")
     if "frame" in unsupported:
         unsupported.add(TURNED_SKY)
-    # The effect of a dim, two-sided environment is unknown if a surface shader hides the tints of
-    # lobes, or if light passes by opacity, which ignores the environment's intensity.
+    # The correct light from a dim, two-sided environment is unknown if a surface shader hides the
+    # tints of lobes, or if opacity replaces refraction and ignores the environment's intensity.
     if Ability.MATERIAL in lobe.requires or backend.host.active.transmission == "opacity":
         unsupported.add(TWO_SIDED)
     axes = tuple(
@@ -286,7 +286,7 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
     rows = covering(axes)
     turned = backend.turned
     batch = turned.where(np.arange(EACH * len(rows)) % len(turned.wo))
-    if lobe.curved:  # subsurface light leaves at other points; draw new inputs
+    if lobe.curved:
         batch = batch.altered(**lobe.random_inputs(rng, len(batch.wo)))
     if lobe.types.get("roughness") == "vector2":
         alpha = np.array(batch.inputs["roughness"])
@@ -442,7 +442,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
         else:
             sky = samples.sky_map() if kind == "uneven" else None
             values = drawn(batch, partial(case.backend.albedo, irradiance=sky), layout)
-            if "tint" in batch.inputs and not case.opaque:  # if two-sided, tint on entry and exit
+            if "tint" in batch.inputs and not case.opaque:  # if two-sided, tinted on entry and exit
                 twice = np.repeat([groups[n].client.two_sided for n, _ in rows], EACH)
                 tint = batch.inputs["tint"]
                 batch = batch.altered(tint=np.where(twice[:, np.newaxis], tint * tint, tint))
@@ -502,7 +502,7 @@ def shared(wrong: Mask, states: Sequence[set[str]]) -> results.Cause:
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
-    """Names of groups (words before a colon), and of all states that are not first in an axis."""
+    """Names of states that are not first in an axis, and of their groups (words before a colon)."""
     first = {next(iter(each)) for each in axes.values()}
     parts = [state.split(":") for state in states if state not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}
@@ -514,8 +514,8 @@ ROWS = (
           claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
           applies=check.family(LobeSpec), measure=states, control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
-          # If opacity replaces refraction, a lobe in mode T passes the tint at every view, so the
-          # negative control, whose views are exchanged on purpose, could not fail.
+          # If opacity replaces refraction, a lobe in mode T passes the same light at every view, so
+          # the negative control, which exchanges views, could not fail.
           methods=lambda spec, methods: methods.transmission != "opacity" or not DARK(spec)),
 )
 # fmt: on

@@ -150,7 +150,7 @@ def without_effect(case: Case) -> list[str]:
     return [name for name, each in zip(spec.names, effective, strict=True) if not each]
 
 
-# The host evaluates only the first pair; the result of the first pair is the result of all pairs.
+# A mistake in which the result of the first pair is used for all pairs.
 ignore_changes = controls.Control(
     "every change is dropped",
     lambda case: replace(
@@ -175,7 +175,7 @@ SENTENCE = Comparison("value", direct_values, lambda case: case.valued.value_can
 
 
 def diagnose_sentence(case: Case) -> Diagnosis:
-    """Find the formula that the shader or, failing that, the shader's graph uses for a sentence."""
+    """Find the formula with which the shader, or else the shader's graph, implements a sentence."""
     from mxeon.conformance.reference import Reference
 
     spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)

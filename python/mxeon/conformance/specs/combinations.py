@@ -17,8 +17,8 @@ from mxeon.shaders import nodes
 
 PASSES = ZELTNER_THROUGHPUT.term("a throughput between them")
 VALUE = sum_of(ZELTNER_VALUE.term("two values", 2.0), PASSES)
-# If a mix with the sum of `top` and `base` covers `base`, the layer's albedo has derivatives of at
-# most 1 and 2 with respect to the albedos of `top` and `base`.
+# If a mix of `top` with the sum of `top` and `base` covers `base`, the layer's albedo has at most
+# the error of the albedo of `top` plus twice the error of the albedo of `base`.
 THREE_ALBEDOS = ZELTNER_ALBEDO.term("two albedos, and a throughput between them", 3.0)
 ALBEDO = sum_of(THREE_ALBEDOS, quantity=Quantity.ALBEDO)
 THIRD = ZELTNER_VALUE.term("a third value"), ZELTNER_THROUGHPUT.term("its throughput")
@@ -26,7 +26,7 @@ NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=T
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # The measured and the expected value are the same product, and the factor is exact.
+    # Both values are the same product with an exact factor, so they differ by one rounding.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }
@@ -78,11 +78,11 @@ class CombinedSpec(PbrSpec):
     """A node that combines lobes of weight 1."""
 
     requires = spec.Ability.LOBE | spec.Ability.COMBINATION
-    # If several nodes use a lobe, MaterialX scales the lobe in all nodes by a connected mix weight.
+    # MaterialX scales a lobe by a mix's connected weight in all nodes that use the lobe.
     plain = ("lobes", "inputs from an image")
 
     def batches(self, counts: samples.Counts) -> tuple[samples.Batch, ...]:
-        """Random and special pairs; only specs of single lobes test pairs outside the domain."""
+        """Random and special pairs, without pairs outside the domain."""
         rng, count = samples.generator(), counts.pairs
         wo, wi = samples.directions(rng, count), samples.directions(rng, count)
         special = samples.special_directions(rng)

@@ -37,8 +37,8 @@ VALUE = sum_in(
 # of H.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
-# If a cosine is at least 1/4, a rounding of the cosine grows 4 times in s / t, 3 times in a sine,
-# and 2 times in other factors, so 9 times in all.
+# A rounding of a cosine of at least 1/4 is amplified by 4 in Oren and Nayar's ratio s / t, by 3 in
+# a sine, and by 2 in other factors, which is 9 in all.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
@@ -84,7 +84,7 @@ class DiffuseModelSpec(ScatteringSpec):
 
     @property
     def drawn(self) -> tuple[Input, Input]:
-        """Color and roughness; the largest roughness is rounded down to float32."""
+        """The inputs color and roughness. The largest roughness is rounded down to float32."""
         largest = reference.diffuse_model(self.model).largest
         most = np.float32(largest)
         high = float(most if most <= largest else np.nextafter(most, np.float32(0.0)))
@@ -99,7 +99,7 @@ class DiffuseModelSpec(ScatteringSpec):
     def random_inputs(
         self, rng: np.random.Generator, count: int, edged: bool = False
     ) -> dict[str, Array]:
-        """Random inputs; unless `edged`, the last sixteenth of the colors is gray."""
+        """Random inputs. Unless `edged`, the last sixteenth of the colors is gray."""
         inputs = super().random_inputs(rng, count, edged)
         if not edged:
             gray = inputs["color"][count - count // 16 :]
@@ -137,7 +137,7 @@ def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
 
 
 def _limited(function: Callable[..., Array], largest: float) -> Callable[..., Array]:
-    """The function with roughness limited to `largest`; the last argument holds the inputs."""
+    """The function with roughness limited to `largest`. The inputs are the last argument."""
 
     def limited(*arguments: Any) -> Array:
         *directions, inputs = arguments
@@ -182,8 +182,8 @@ class SurfaceLobe(DiffuseModelSpec):
 
     The other lobes depend only on the directions, so two evaluations isolate the diffuse lobe. With
     a black color, only the other lobes remain. With a white color and a roughness of 0, every
-    diffuse model is Lambert's, so the result is the share of light that reaches the diffuse lobe
-    and returns.
+    diffuse model equals Lambert's model, so the result is the share of light that reaches the
+    diffuse lobe and returns.
     """
 
     requires = Ability.BELOW

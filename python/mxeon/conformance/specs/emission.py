@@ -134,7 +134,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return nodes.document_text(axis + text + EMITTING_TEXT)
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
-        """Radiance toward each view, (N, 3); components of views that round above 1 are clipped."""
+        """Radiance toward each view, (N, 3). Views are clipped to remove roundings above 1."""
         return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property
@@ -156,7 +156,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
 
 
 class ConeSpec(EmissionSpec):
-    """A node that emits light inside a cone; the axis of the cone is an input."""
+    """A node that emits light inside a cone around the input `normal`."""
 
     def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
         """Random inputs: half of the cones have a falloff, and a quarter are narrow.
@@ -189,9 +189,9 @@ class ConeSpec(EmissionSpec):
         return *super().batches(counts), _without_edges(near), _without_edges(turned)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by the sum of 1 and the falloff's largest slope near the view's cosine.
+        """Divide values by 1 + s, where s is the falloff's largest slope near the view's cosine.
 
-        Cosines are near up to a difference of CONE_ROUNDINGS roundings.
+        Near means at a distance of at most CONE_ROUNDINGS roundings.
         """
         batch = compared.batch
         inner, outer = (batch.inputs[name] for name in (INNER, OUTER))
@@ -218,7 +218,7 @@ def _edge(angle: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AbsentSpec(spec.Spec):
-    """A node whose values no model computes; only the existence of an implementation is judged."""
+    """A node without a model. Only the existence of an implementation is judged."""
 
     requires = Ability.IMPLEMENTATION
 
@@ -228,7 +228,7 @@ class AbsentSpec(spec.Spec):
         return nodes.document_text(self.text)
 
 
-# A node without an implementation; the check of implementations must fail for this node.
+# The check of implementations must fail for this node, which has no implementation.
 UNIMPLEMENTED = AbsentSpec(
     title="a node without an implementation",
     node="mxeon_absent",
@@ -302,7 +302,7 @@ EMISSION_SPECS = tuple(
 
 # --- media: VDF nodes between two transmitting lobes ----------------------------------------------
 
-# A sum, the sum's exponential, a product, and a quotient of two results have 12 roundings in all.
+# A transmittance has 12 roundings, in a sum, an exponential, a product and a quotient.
 TRANSMITTANCE = sum_of(roundings(12), quantity=Quantity.TRANSMITTANCE)
 GLASS = nodes.Node(
     "dielectric_bsdf",

@@ -45,7 +45,7 @@ INPUTS = (
 )
 # fmt: on
 
-# A lobe of variance v falls from 1e5, the largest pi f, to 1 within an angle of REACH sqrt(v).
+# Within an angle of REACH sqrt(v), a lobe of variance v falls from 1e5, the largest pi f, to 1.
 REACH = math.sqrt(2.0 * math.log(1e5))
 ANGLE, CHAIN = 12, 48  # roundings of an angle, and of all later operations
 
@@ -147,7 +147,7 @@ class HairSpec(PbrSpec):
         return np.asarray(front * near + (1.0 - front) * far)
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Divide values by the sum of max(value, LEAST) and of the slopes along four angles."""
+        """Divide values by max(value, LEAST) plus the slopes along four angles."""
         batch = compared.batch
         total = np.maximum(self.value(batch), LEAST)
         for step in np.eye(4) * STEP:

@@ -116,13 +116,13 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return spec.draw(rng, count, self.drawn, edged)
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Inputs changed so that a quadrature is accurate; the default is no change."""
+        """Inputs for which a quadrature is accurate. By default, inputs stay unchanged."""
         return inputs
 
     def integrated(
         self, counts: Counts, adapt: Callable[[dict[str, Array]], dict[str, Array]]
     ) -> tuple[Batch, Array]:
-        """Random materials, each lit from all directions of a quadrature, and quadrature weights.
+        """Random materials lit from all directions of a quadrature, and the quadrature's weights.
 
         `adapt` limits the inputs to values that a backend supports.
         """
@@ -157,7 +157,7 @@ class Mode(spec.Names):
 
 
 def mode_of(row: PbrNode, title: str = "") -> Mode:
-    """Fields of the spec of a row; the default title lists the inputs that select the mode."""
+    """Fields of a row's spec. The default title lists the inputs that select the mode."""
     words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
     return {**spec.named(row, title or ", ".join(words)), "row": row}
 
@@ -203,7 +203,7 @@ class PbrSpec(ScatteringSpec):
         return tuple(batch.first(counts.albedos) for batch in views)
 
     def edges(self, counts: Counts) -> Batch:
-        """Special directions, also opposite directions, with extreme inputs such as an IOR of 0."""
+        """Special and opposite directions, with extreme inputs such as an IOR of 0."""
         rng = samples.generator()
         wo, wi = samples.special_directions(rng)
         inputs = self.random_inputs(rng, len(wo), edged=True)
@@ -217,7 +217,7 @@ class PbrSpec(ScatteringSpec):
         return Batch(wo, wi, inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Use Gauss nodes in the cosine, dense at the horizon and the normal, and uniform azimuths.
+        # Use uniform azimuths, and Gauss nodes in the cosine, dense at the horizon and the normal.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)
@@ -230,7 +230,7 @@ class PbrSpec(ScatteringSpec):
 
 
 def uncolored(batch: Batch) -> Batch:
-    """The batch, in which white replaces all colors that only absorb light."""
+    """Replace all colors that only absorb light by white."""
     return batch.altered(**{each: samples.WHITE for each in ABSORBING if each in batch.inputs})
 
 
@@ -242,7 +242,7 @@ def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
 def _throughput(
     batch: Batch, albedo: Callable[[Array, Inputs], Array], colored: bool = False
 ) -> Array:
-    """1 minus the albedo, at least 0, (N, 3); unless `colored`, the albedo excludes absorption."""
+    """max(1 - albedo, 0), (N, 3). Unless `colored`, the albedo excludes absorption by colors."""
     return np.maximum(1.0 - _albedo(albedo, batch if colored else uncolored(batch)), 0.0)
 
 

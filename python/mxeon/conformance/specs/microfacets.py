@@ -29,17 +29,17 @@ from mxeon.models.nodes.node import Scattering
 COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # the models are slow
 LEAST_ALPHA = 1e-3  # smallest alpha of random pairs
 LEAST_STRETCHED = 0.05  # smallest alpha and cosine of anisotropic lobes with measured albedos
-LEAST_INVERTED = 0.1  # smallest IOR of a dielectric before the IOR is inverted
+LEAST_INVERTED = 0.1  # smaller IORs of dielectrics are raised to 0.1 before inversion
 LEAST_INDEX = 1.05  # smallest IOR above 1 in the domain of the fit by tools/fits/ggx_cosine.py
 COSINE_STEP = 2.0**-18  # largest difference between wo . wh and wi . wh
-RIM_COLOR = 0.05  # smallest |wo + wi|, unless a channel of color90 is at least 0.05
-# Smallest alpha of lobes with rotated tangents. Roundings of a tangent are divided by alpha.
+RIM_COLOR = 0.05  # smallest |wo + wi| if all channels of color90 are below 0.05
+# Smallest alpha of lobes with rotated tangents, because errors of a tangent grow by 1 / alpha.
 LEAST_TANGENT_ALPHA = 0.05
-LEAST_TANGENT_COSINE = 0.1  # smallest cosine with rotated tangents
+LEAST_TANGENT_COSINE = 0.1  # smallest cosine of directions if tangents are rotated
 COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which Fresnel curves are tested for values below 0
 
 # fmt: off
-# The first IOR of `materials` reflects enough light for deliberate errors to show in pictures.
+# With the first IOR in `materials`, pictures are bright enough to show deliberate errors.
 INDEX = spec.Input("ior", low=0.5, high=3.0, edges=(1.0, 1.5, 3.0), change=1.6, materials=(2.5, 1.2),
               beyond=(0.0, 0.2, 1.0015, 1.02, 4.0, 10.0, 100.0))
 FILM: Values = {"thinfilm_thickness": 400.0}
@@ -76,7 +76,7 @@ INPUTS = {
     ),
 }
 # fmt: on
-# MaterialX's average of a film's reflectance is least accurate for a film around IOR 1.
+# MaterialX's average of a film's reflectance is least accurate on a base with an IOR of 1.
 BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
@@ -84,17 +84,17 @@ BUBBLE_ROW = 3
 # Largest errors of the shaders' fits; scripts in tools/fits measure these errors.
 ESS_FIT = 5e-4  # error of E_ss (ggx_albedo.py)
 SMOOTH_ESS_FIT = 5.3e-5  # error of E_ss of smooth lobes at cosines from 0.05 (ggx_albedo.py)
-# Error of a compensated value due to the fit of E_ss (ggx_albedo.py). The errors of values above 1
-# are relative errors.
+# Error of a value with compensation, due to the fit of E_ss (ggx_albedo.py). The error is relative
+# for values above 1.
 ESS_VALUE_FIT = 1.14e-3
 METAL_FIT = 4.6e-4  # error of F_ss of a metal (fresnel_average.py)
-# Error of a compensated value for an error of 1 in F_ss (ggx_albedo.py). The errors of values above
-# 1 are relative errors.
+# Error of a value with compensation if F_ss has an error of 1 (ggx_albedo.py). The error is
+# relative for values above 1.
 COMPENSATED = 0.6
 LOBE_FIT = 3.2e-3  # error of the albedo of GGX with a Fresnel curve (ggx_cosine.py)
 INSIDE_FIT = 2.8e-2  # error of the albedo of a dielectric with an IOR below 1 (ggx_inside.py)
-PASSING_FIT = 3.4e-2  # error of the share of light that passes from inside (ggx_inside.py)
-DIP_FIT = 5.9e-3  # additional error of an albedo with the strongest dip (ggx_cosine.py)
+PASSING_FIT = 3.4e-2  # error of the share of light that leaves a denser medium (ggx_inside.py)
+DIP_FIT = 5.9e-3  # additional error of an albedo for the deepest Fresnel dip (ggx_cosine.py)
 LEAST_ESS = 1.0 - math.log(2.0)  # smallest E_ss, at alpha 1 along the normal
 
 
@@ -110,8 +110,8 @@ def sum_over(directions: int) -> Term:
 HALF_TEXEL = math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS)
 TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, half of one away")
 
-# Errors of the fits for two alphas (ggx_anisotropic.py): the relative error of E_ss, and the error
-# of a dielectric's albedo. The second row limits the ratio of alphas and the view's cosine.
+# Errors of two fits for anisotropic GGX (ggx_anisotropic.py): the relative error of E_ss, and the
+# error of a dielectric's albedo. Both errors apply to alpha ratios up to 50 and cosines from 0.01.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
 LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
 ANISOTROPIC = Term(ANISOTROPIC_FIT, "the fit of E_ss of two alphas")
@@ -126,7 +126,7 @@ HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the
 
 
 def compensated(average: float, words: str) -> Tolerance:
-    """Tolerance of compensated values if F_ss has the error `average`."""
+    """Tolerance of values with compensation if F_ss has the error `average`."""
     fit = Term(ESS_VALUE_FIT, "the fit of E_ss over E_ss")
     return sum_of(fit, Term(COMPENSATED * average, f"{words}, times 0.6"), exact=True)
 
@@ -138,8 +138,8 @@ MEAN = sum_in(Quantity.ALBEDO, ESS, MEAN_METAL)
 ENVIRONMENT = sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(1024))
 THROUGHPUT = sum_in(Quantity.ALBEDO, ESS, LOBE)
 SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
-# The distribution of normals h is proportional to q^-4 with q^2 = h_z^2 + (h_x / a_x)^2 +
-# (h_y / a_y)^2. The logarithm of the distribution has a slope of at most 2 / min(a_x, a_y).
+# The distribution of normals h is proportional to q^-4 with q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2.
+# Therefore the logarithm of the distribution has a slope of at most 2 / min(a_x, a_y).
 FRAME = sum_of(
     roundings(
         2 * 2 * 5 / (2 * samples.TURNED[0] * samples.LEAST_TURNED),
@@ -187,9 +187,9 @@ ERRORS = {
     "denser": sum_in(Quantity.ALBEDO, INSIDE, ESS),
 }
 # fmt: on
-QUADRATURE = 6e-4  # error of an albedo that is a quadrature of exact values
-# MaterialX fits a lobe's albedo in a prefiltered environment as F0 A + F90 B. If F0 and F90 are 1,
-# the error is largest where B is 0.
+QUADRATURE = 6e-4  # error of an albedo computed by a quadrature of exact values
+# MaterialX fits a lobe's albedo in a prefiltered environment as F0 A + F90 B. The error for F0 =
+# F90 = 1 is largest where B is 0.
 PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
@@ -202,7 +202,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
         **lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE),
         **dict.fromkeys(("value", "reciprocity"), VALUE),
         "anisotropic_throughput": throughput.plus(ANISOTROPIC, ANISOTROPIC_LOBE),
-        # An error of E_ss cancels, because the error raises values and lowers throughputs.
+        # An error of E_ss cancels, because values rise by as much as throughputs fall.
         "light": sum_in(Quantity.LIGHT, *throughput.terms[1:], quadrature),
         "methods": ENVIRONMENT.plus(PREFILTERED, few),
         "sky": sum_in(Quantity.IRRADIANCE, Term(2.0 * QUADRATURE, words), sum_over(1024), TEXEL),
@@ -211,7 +211,7 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacetSpec(lobes.PbrSpec):
-    """A microfacet node in one mode; the values are largest near the mirror direction."""
+    """A microfacet node in one mode."""
 
     counts: Counts = COUNTS
     least_cosine: float = sheen.FIT_COSINE
@@ -221,13 +221,13 @@ class FacetSpec(lobes.PbrSpec):
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The usual batches, and a batch near the mirror direction; both alphas are equal."""
+        """The batches of any lobe, and pairs near the mirror direction. All lobes are isotropic."""
         batches = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*batches, self.mirrored(counts)[0]))
 
     @property
     def value_candidates(self) -> tuple[samples.Candidate, ...]:
-        """The candidates that differ from the model if both alphas are equal."""
+        """The candidates that differ from the model for isotropic lobes."""
         return tuple(each for each in self.all_candidates if not each.title.startswith(MEAN_ALPHA))
 
     @property
@@ -235,7 +235,7 @@ class FacetSpec(lobes.PbrSpec):
         return super().value_candidates
 
     def anisotropic(self, counts: Counts) -> Batch:
-        """Lights near the mirror direction, for anisotropic materials in the domain of the fits."""
+        """Pairs near the mirror direction, with anisotropic materials in the domain of the fits."""
         batch = self.mirrored(counts)[0]
         alpha = batch.inputs["roughness"]
         least = alpha.max(axis=1, keepdims=True) / LARGEST_RATIO
@@ -259,7 +259,7 @@ class FacetSpec(lobes.PbrSpec):
         return tuple(views)
 
     def mirrored(self, counts: Counts) -> tuple[Batch, Batch]:
-        """Random views, each with two lights: reflections of the view at visible normals."""
+        """Random views, each with two light directions, which are reflections at visible facets."""
         rng, count = generator(), counts.mirrored
         wo, inputs = directions(rng, count), self.random_inputs(rng, count)
         alpha = inputs["roughness"]
@@ -288,7 +288,7 @@ class FacetSpec(lobes.PbrSpec):
         return self.values(partial(LOBES[self.node].value, terms=Lobe(uncompensated)), batch)
 
     def summed(self, pairs: Batch) -> Array:
-        """Values without compensation, with G_2 / G_1 of the mean alpha, as in MaterialX's sums."""
+        """Values without compensation. G_2 / G_1 uses the mean alpha, as MaterialX's sums do."""
         alpha = pairs.inputs["roughness"]
         mean = np.sqrt(alpha.prod(axis=1))
         weight = smith_g2(pairs.wo[:, 2], pairs.wi[:, 2], mean)
@@ -303,7 +303,7 @@ class FacetSpec(lobes.PbrSpec):
         return denser(batch.altered(roughness=rough))
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Inputs without negative Fresnel curves, which values clamp but fits of albedos do not."""
+        """Inputs without negative Fresnel curves, which fits of albedos do not clamp."""
         changed = simple(inputs)
         if "color82" in changed:
             changed["color82"][falls_below_0(changed)] = 1.0
@@ -324,7 +324,7 @@ class FacetSpec(lobes.PbrSpec):
 
 
 def denser(batch: Batch) -> Batch:
-    """The batch with IORs below 1 inverted, because curves are too steep at a critical angle."""
+    """Invert IORs below 1, because the Fresnel curve is too steep at a critical angle."""
     if "tint" not in batch.inputs:
         return batch
     index = np.maximum(batch.inputs["ior"], LEAST_INVERTED)
@@ -358,9 +358,9 @@ def _has_curve(batch: Batch) -> samples.Mask:
     """Mask of pairs whose Fresnel curve is accurate in float32 and at least 0.
 
     A correct shader may compute the curve from wo . wh or from wi . wh. The two cosines differ by
-    the difference of the squared lengths of wo and wi, which is a rounding, divided by |wo + wi|.
-    If wo and wi are nearly opposite, the cosines differ too much, a curve with a dark color90 has
-    few correct digits, and shaders clamp the cosine to GRAZING.
+    (|wo|^2 - |wi|^2) / |wo + wi|, because rounded vectors are not exactly unit vectors. If wo and
+    wi are nearly opposite, the cosines differ too much, a curve with a dark color90 has few correct
+    digits, and shaders clamp the cosine to GRAZING.
     """
     length = np.linalg.norm(batch.wo + batch.wi, axis=1)
     rounding = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))
@@ -389,7 +389,7 @@ def _below_0(inputs: Mapping[str, Array], cosine: Array | float) -> samples.Mask
 
 
 def reflected(wo: Array, alpha: Array, height: Array, around: Array) -> Array:
-    """Views, (N, 3), reflected at visible GGX facets, which two numbers in [0, 1] select."""
+    """Views reflected at visible GGX facets, (N, 3). Two numbers in [0, 1] select each facet."""
     return samples.float32(sampling.ggx_sample(wo, np.stack([height, around], axis=-1), alpha)[0])
 
 
@@ -404,7 +404,7 @@ FACET_SPECS = tuple(
 )
 
 
-# Largest slope of a Fresnel curve at a distance of at least 0.05 from the critical cosine.
+# Largest slope of a Fresnel curve at cosines that differ from the critical cosine by 0.05 or more.
 FRESNEL_SLOPE = 7.3
 
 
@@ -480,8 +480,8 @@ TRANSMISSION_SPECS = tuple(
 # --- thin films -----------------------------------------------------------------------------------
 
 # Error of a film's albedo for cosines of at least 0.1 and films of up to 1000 nm, measured by
-# tools/fits/thin_film.py. Shaders average a film's reflectance over visible facets, and over the
-# hemisphere for F_ss, by sums over three cosines each.
+# tools/fits/thin_film.py. Shaders average a film's reflectance over visible facets by a sum over
+# three cosines, and over the hemisphere (F_ss) by another sum over three cosines.
 FILM_SEEN = 7.82e-2
 FILM_OILED = 6.92e-2  # error of a film's albedo for films with an IOR of at least 1.25
 FILM_PHASE = 71.0  # largest phase of the first order, in radians, at 1000 nm and an IOR of 2.5
@@ -492,20 +492,21 @@ FILM_ALBEDO = sum_in(
     Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
-# A metal with a lower IOR than the film reflects totally, and three cosines do not resolve fringes.
+# If a metal has a lower IOR than the film, light is totally reflected, and three cosines do not
+# resolve the fringes.
 FILM_TRAPPED = single(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
 
-# In a picture, the error at a view has the view's cosine as a weight.
+# In a picture, the error at each point is weighted by the view's cosine.
 FILM_SHOWN = sum_in(
     Quantity.PICTURE,
     Term(2.59e-2, "FILM_ALBEDO's, times the cosine"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
-FILM_AVERAGE = 3.61e-2  # largest error of a film's F_ss that is a sum over three cosines
+FILM_AVERAGE = 3.61e-2  # largest error of a film's F_ss that is computed from three cosines
 
 
 def film_terms(alpha: float) -> tuple[Term, Term]:
-    """Errors of a lobe under a film in direct light, due to F_ss and to the film's curve."""
+    """Errors of a lobe under a film in direct light, due to F_ss and to the Fresnel curve."""
     mu = np.linspace(1e-3, 1.0, 64)
     E = ggx_albedo_dir(mu, alpha)
     lost = min(COMPENSATED, float((mu * (1.0 - E) / E).max()))
@@ -517,8 +518,7 @@ def _mean(value: float, words: str) -> Tolerance:
     return single(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
-# Orders that are not summed matter most for thin films on metals at grazing views. The error of
-# F_ss is largest for unequal IORs.
+# Omitted orders of interference matter most for thin films on metals at grazing views.
 UNSUMMED = Term(8e-4, "orders that are not summed")
 FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss in three cosines").terms, UNSUMMED)
 # fmt: off
@@ -537,7 +537,8 @@ FILM_ERRORS = {
         Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
         quantity=Quantity.REFLECTANCE_RMS, metric=tolerance.root_mean_square),
-    # Shaders compute F_ss by a sum under any film, even a film without effect, otherwise by a fit.
+    # With any film, even a film without effect, shaders compute F_ss from three cosines. Without a
+    # film, shaders compute F_ss by a fit.
     "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
     "film_energy": VALUE,
     "retroreflection": lobes.BURLEY_VALUE,
@@ -551,7 +552,7 @@ FILM_ERRORS = {
 
 
 class Films(NamedTuple):
-    """A random set of lobes under films, with lights in the mirror direction."""
+    """Ranges for a random set of lobes under films, with lights in the mirror direction."""
 
     size: int
     alpha: tuple[float, float]
@@ -559,8 +560,7 @@ class Films(NamedTuple):
     thickness: tuple[float, float]  # range in nm
 
 
-# Sets of films. tools/fits/thin_film.py measures the mean error of each set.
-# Rough lobes under films with few fringes; facets mask a part of the Fresnel curve.
+# Rough lobes under films with few fringes. tools/fits/thin_film.py measures the mean errors.
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
 FRINGED = STEEP._replace(thickness=(50.0, 1000.0))
 GLOSSY = STEEP._replace(alpha=(0.03, 0.1))  # visible facets are similar, so few cosines suffice
@@ -574,7 +574,7 @@ ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
 FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
 LEAST_OIL = 1.2  # smallest IOR of films with a visible effect
 LEAST_FILM = 1.25  # smallest IOR of films for albedos; below 1.25, metals may reflect totally
-LEAST_FACET = 0.1  # smallest cosine to the half vector; all orders matter at grazing angles
+LEAST_FACET = 0.1  # smallest cosine to the half vector, because grazing light needs all orders
 THICK = (0.0, 1.0, 100.0, 1e4)  # film thicknesses at the edges of the domain, in nm
 
 
@@ -593,7 +593,7 @@ class FilmSpec(FacetSpec):
         return tuple(each for each in super().bounded if each.name.startswith("thinfilm"))
 
     def random_inputs(self, rng: samples.Rng, count: int, edged: bool = False) -> dict[str, Array]:
-        """Random inputs, with an IOR of at least 1; if `edged`, some films have the base's IOR.
+        """Random inputs with IORs of at least 1. If `edged`, some films have the base's IOR.
 
         For IORs below 1, averages over few cosines do not resolve the curve at the critical angle.
         """
@@ -606,12 +606,12 @@ class FilmSpec(FacetSpec):
         return inputs
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """Values of a function that is defined for films with an IOR of at least 1."""
+        """Values with films whose IOR is raised to at least 1."""
         index = np.maximum(batch.inputs["thinfilm_ior"], 1.0)
         return super().values(function, batch.altered(thinfilm_ior=index))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs, special pairs, and pairs near the mirror direction. No facet is grazing."""
+        """Random pairs, special pairs, and pairs near the mirror direction."""
         rng, count = generator(), counts.pairs
         special = _some_special(rng, count)
         random = directions(rng, count), directions(rng, count)
@@ -682,7 +682,7 @@ def _steep(batch: Batch) -> np.ndarray:
     return np.asarray(cosine >= LEAST_FACET)
 
 
-# For films of at least 200 nm, the reflectance has twice the error of a cosine or sine.
+# For films of at least 200 nm, the reflectance has twice the error of the engine's cosine or sine.
 WAVE_ERROR = spec.EngineError(
     "the engine's own cosine and sine, times 2",
     spec.WAVE.error(lambda: [samples.float32(np.linspace(0.0, FILM_PHASE, spec.ARGUMENTS))], 2.0),

@@ -44,10 +44,10 @@ CONTY_KULLA_ALBEDO = sum_in(Quantity.ALBEDO, *FIT, exact=True)
 
 
 def power_error(host: Host) -> float:
-    """Error of Conty and Kulla's sheen due to the engine's pow(), minus the roundings of LOGARITHM.
+    """Error of Conty and Kulla's sheen due to the engine's pow(), beyond LOGARITHM roundings.
 
-    With n = 1 / roughness, pi f cos is at most (2 + n) sin^n / 8. Errors of values above 1 are
-    relative errors.
+    With n = 1 / roughness, pi f cos is at most (2 + n) sin^n / 8. The error is relative for values
+    above 1.
     """
     rng = samples.generator()
     exponent = samples.LEAST_SHEEN ** -rng.random(spec.ARGUMENTS)
@@ -73,7 +73,7 @@ CONTY_KULLA = lobes.PbrSpec(
         **lobes.lobe_errors(
             CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_ALBEDO, FLAT_FRAME, 2e-4
         ),
-        # The half vector and the power of its sine are the same for exchanged directions.
+        # Exchanged directions have the same half vector, and the same power of the sine.
         "reciprocity": sum_of(roundings(32)),
     },
     outside_errors={("value", "roughness", x): conty_kulla_value(2.0 / x) for x in (1e-3, 1e-4)},

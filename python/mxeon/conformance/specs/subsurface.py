@@ -26,7 +26,7 @@ MATERIALS: tuple[Values, ...] = (
     *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
 
-# The largest error of six circles is 9.3e-3, at points on the axis of the light.
+# Six circles approximate the integral of the profile with an error of up to 9.3e-3.
 RINGS = tolerance.single(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 MEAN_OF_CIRCLES = "twice the mean over a sphere of the errors of six circles"
 RINGS_MEAN = tolerance.single(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)
@@ -49,8 +49,8 @@ class SubsurfaceSpec(PbrSpec):
 def _blurred(batch: Batch) -> Array:
     """Values of MaterialX's implementation on a plane, (N, 3).
 
-    This implementation adds light below the horizon and in shadow. For a cosine above 1, the arc
-    cosine is NaN, and the light is 0.
+    MaterialX adds light below the horizon and in shadow. For a cosine above 1, the arc cosine is
+    NaN, and the light is 0.
     """
     mu = batch.wi[:, 2]
     shadow = 1.0 - np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))

@@ -25,8 +25,8 @@ if TYPE_CHECKING:  # avoid loading MaterialX
 
     from mxeon.shaders.generation import Shader
 
-# Ranges by kind of input. `materials` is the value in a material to which all lobes contribute;
-# `change` differs from the default value of every input.
+# Ranges by kind of input. The value `materials` makes all lobes of a material contribute. The value
+# `change` differs from every input's default.
 RANGES = {
     "color": spec.color("", (0.5, 0.6, 0.7), edges=(1.0,)),
     "share": Input("", edges=(0.0, 1.0), change=0.7, materials=(0.5,)),
@@ -53,10 +53,9 @@ def _ones(names: str) -> Values:
 
 
 LIGHT_ALPHA = 0.3  # alpha of the GGX lobe from which half of the light directions are sampled
-# tools/fits/surface_shaders.py measures the errors that the fits of all lobes cause in a shader. An
-# error is the largest deviation from the layer equation in float64, over 32 sets of a check's size.
-# The error is a third of the sum of the largest errors of all lobes, because no material has the
-# largest errors of all lobes at once.
+# tools/fits/surface_shaders.py measures a shader's largest error due to the fits of all lobes, over
+# 32 sets of samples. The error is a third of the sum of the lobes' largest errors, because no
+# material has all of the largest errors at once.
 VALUE = sum_of(Term(3.5e-3, "the fits of all lobes of a material, over 32 sets of 256 pairs"))
 FITS = Term(2.7e-3, "the fits of all lobes of a material, over 32 sets of 64 views")
 ALBEDO = sum_in(Quantity.ALBEDO, FITS, sum_over(1024))
@@ -70,7 +69,7 @@ MEAN = sum_of(
     metric=mean_scaled,
 )
 # A reflecting lobe of albedo E over a transmitting lobe passes the fraction (1 - E)^2 of the light,
-# whose derivative with respect to E is at most 2 in magnitude.
+# whose derivative has a magnitude of at most 2.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
@@ -107,8 +106,8 @@ class SurfaceShaderSpec(spec.LobeSpec):
     needs: Mapping[str, Values] = field(default_factory=dict)
     errors: Mapping[str, Tolerance] = field(default_factory=lambda: ERRORS)
     counts: Counts = COUNTS
-    # Inputs that are not varied, because an opacity blends the whole surface with the background,
-    # and because every evaluation sets the occlusion.
+    # Inputs that are not varied. Opacity blends the surface with the background, and every
+    # evaluation sets the occlusion.
     fixed_inputs: tuple[str, ...] = ()
     library: str = "eonlib"  # library whose definition of the node the reference evaluates
 
@@ -177,7 +176,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return self._reference(batch, "environment")
 
     def transmitted(self, batch: Batch, opacity: bool) -> Array:
-        """Light of a uniform environment that passes by refraction or, if `opacity`, by opacity."""
+        """Uniform environment light that passes by opacity if `opacity`, else by refraction."""
         return self._reference(batch, "opacity" if opacity else "transmission")
 
     def clear(self, batch: Batch) -> Batch:

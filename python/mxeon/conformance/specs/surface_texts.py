@@ -23,7 +23,7 @@ from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # names of a model's alternative formulas
 PAIRS = 24  # number of direction pairs, few because an expected albedo takes a millisecond
-GRAZING = 0.05  # smallest cosine of the directions; SLANTED replaces more grazing directions
+GRAZING = 0.05  # directions with smaller cosines are replaced by SLANTED
 SLANTED = samples.float32([0.6, 0.0, 0.8])
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)

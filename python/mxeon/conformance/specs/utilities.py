@@ -44,8 +44,8 @@ INPUTS = {
 }
 # fmt: on
 
-# The aspect ratio is a square root of 1 minus a number of at most 0.98, so a rounding of the number
-# is divided by 2 (1 - 0.98). Errors are absolute, because the smallest alpha is 1e-8.
+# The aspect ratio is the square root of 1 - x with x <= 0.98, so a rounding of x grows by up to 1 /
+# (2 (1 - 0.98)). Errors are absolute, because the smallest alpha is 1e-8.
 ALPHA = sum_in(
     Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
 )
@@ -172,7 +172,7 @@ def _batch(inputs: Mapping[str, Array]) -> Batch:
 
 
 def _inversion(node: str) -> utilities.UtilityNode:
-    """A row for a node of eonlib; the variants are the other nodes and the unchanged color."""
+    """A row for an inversion of EON. The variants are other inversions and the unchanged color."""
 
     def output(name: str) -> utilities.Outputs:
         function = getattr(diffuse, name)
