@@ -75,7 +75,7 @@ def test_a_document_is_not_run_on_a_renderer(monkeypatch):
     run = check(EXAMPLES[:1], ["mitsuba"])
     [result] = [each for each in run.results if each.check == "document"]
     assert result.verdict == NOT_RUN
-    assert re.fullmatch("mitsuba: this renderer .*; it reads no documents", result.reason)
+    assert re.fullmatch("mitsuba: this renderer .*; it cannot read documents", result.reason)
 
 
 @pytest.mark.whole

@@ -106,7 +106,7 @@ def test_a_run_lists_the_files_of_folder_and_package_and_the_lobes_without_a_mod
     assert {*files["folder"], *files["MaterialX"]} == {*tree(str(STOCK)).own, "own.mtlx"}
     line = f"<p>library {copy}: 3 files from the folder, {len(files['MaterialX'])} from MaterialX "
     page = (report / "report.html").read_text()
-    assert line in page and f"own_bsdf (no model of a node that {copy} adds)" in page
+    assert line in page and f"own_bsdf ({copy} adds this node, which has no model)" in page
     assert main(["check", *options, "--full"]) == 0
     rows = {*capsys.readouterr().out.splitlines()}
     assert {f"library {copy}: {where}: {each}" for where in files for each in files[where]} <= rows

@@ -228,12 +228,12 @@ class Evaluating(Backend):
 
     @classmethod
     def errors(cls, spec: Spec) -> Errors:
-        color = roundings(2 * 16, "of a color and the value it has, times the slope 2")
+        color = roundings(2 * 16, "of a color and the resulting value, times the slope 2")
         errors: dict[str, Tolerance | None] = {**spec.errors, "color_space": sum_of(color)}
         if frame := spec.errors.get("frame"):
-            terms = [frame.term("a part in another frame"), roundings(12, "of six parts")]
+            terms = [frame.term("a part in another frame"), roundings(12, "in a sum of six parts")]
             if spec.along:
-                slopes = f"two slopes {spec.along:g} at the normal"
+                slopes = f"twice the slope {spec.along:g} at the normal"
                 error = 2.0 * spec.along * math.sqrt(2.0 * tolerance.ROUNDING)
                 terms.append(Term(error, f"{slopes}, times the angle of a rounded cosine"))
             errors["states"] = sum_of(*terms)
@@ -244,7 +244,7 @@ class Evaluating(Backend):
             colors = samples.float32(np.linspace(0.09, 1.0, POWERS))
             power = samples.float32(np.full(POWERS, 2.4))
             error = POWER.error(lambda: (colors, power))(self.host)
-            return (Term(2.0 * error, "pow() as measured there, times 2"),)
+            return (Term(2.0 * error, "the engine's pow(), times 2"),)
         if Ability.LIGHT not in self.abilities and self.spec.requires & Ability.SCATTERS:
             return ()
         fits = self.spec.prefiltered_fits if self.prefiltered else {}
@@ -338,10 +338,10 @@ FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored
 SOME = 1 << 8  # maximum number of special pairs of each kind
 # The sharpest lobe (alpha 1e-4) amplifies a float64 rounding, 2^-53, by 1e8. The product is less
 # than one float32 rounding, 2^-24.
-ARGUMENTS = sum_of(roundings(1, "of arguments with nine digits, evaluated in float64"), exact=True)
+ARGUMENTS = sum_of(roundings(1, "of arguments printed with nine digits"), exact=True)
 # Each input is rounded up to 16 times before a closure receives the value. A microfacet
 # distribution amplifies a relative error by at most 4.
-GRAPH = sum_of(roundings(4 * 16, "16 from an input to an argument, times the slope 4"))
+GRAPH = sum_of(roundings(4 * 16, "(16 from an input to an argument, times the slope 4)"))
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
@@ -476,25 +476,25 @@ FLAT_SLOPE = 8.0  # largest slope of the diffuse models, per radian
 # Fresnel and shadowing contribute 3.
 SHARP_SLOPE = 2.0 / samples.LEAST_TURNED + 3.0
 FLAT, SHARP = (
-    sum_of(roundings(each * POINT, f"of a point, times the slope {each:g}"), FAST_ARC_COSINE)
+    sum_of(roundings(each * POINT, f"of a position, times the slope {each:g}"), FAST_ARC_COSINE)
     for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
 # Error of the light's direction, in radians. A ray misses a pixel's center by up to JITTER pixels,
 # so the point on a surface at the smallest cosine, RIM, moves by up to JITTER * PIXEL / RIM.
 TURN = JITTER * PIXEL / (RIM * DISTANCE)
-DISPLACED = "a point up to 0.007 pixels beside the middle, at cosine 0.05"
+DISPLACED = "a point up to 0.007 pixels from a pixel's center, at cosine 0.05"
 TRACED_FLAT, TRACED_SHARP = (
     sum_of(Term(each * TURN, f"{DISPLACED}, times {each:g}")) for each in (FLAT_SLOPE, SHARP_SLOPE)
 )
 BELOW = sum_of(
-    roundings(4.0 * 16.0 * POINT, "of a point, times 16 by the lobes above, in four values"),
+    roundings(4.0 * 16.0 * POINT, "of four positions, amplified 16 times by the lobes above"),
     FAST_ARC_COSINE,
 )
 VIEWS, PIXELS = 8, 1 << 12  # number of views per case, and number of pixels shared by all views
-MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, each off by 0.01 rms"
+MEAN_OF_PATHS = "five standard errors of the mean of 512 pixels of 64 paths, rms error 0.01 each"
 NOISE = sum_in(Quantity.ALBEDO, Term(5.0 * 0.01 / math.sqrt(PIXELS / VIEWS), MEAN_OF_PATHS))
-PASSED = single(2e-3, Quantity.ALBEDO, "testrender's tables, off by 1e-3 for a white dielectric")
-NODES_MOVED = Term(1.2e-3, "32 x 32 nodes, those next to the view moved by up to 0.08")
+PASSED = single(2e-3, Quantity.ALBEDO, "testrender's tables (1e-3 for a white dielectric)")
+NODES_MOVED = Term(1.2e-3, "a quadrature of 32 x 32 nodes, moved by up to 0.08 near the view")
 INTEGRAL = sum_in(Quantity.ALBEDO, SHARP.term("an average of values"), NODES_MOVED)
 LIGHT = sum_in(Quantity.LIGHT, INTEGRAL.term("an integral of values"), PASSED.term("a throughput"))
 
@@ -649,23 +649,23 @@ def _with_variants(backend: type[Rendered], spec: Spec) -> Spec:
 # Hosts that render pictures of a sphere. Each lit point of a sphere provides a pair of directions.
 
 PICTURE_SIZE = 128
-HALF_CUT = Term(2.0**-10, "half floats, cut off")  # llvmpipe truncates instead of rounding
+HALF_CUT = Term(2.0**-10, "half floats, truncated")  # llvmpipe truncates instead of rounding
 # Relative error of a lobe per radian of error in a direction. A microfacet distribution contributes
 # 2 / alpha, where alpha is at least 0.4. Fresnel, shadowing and the cosine contribute 3.
 LOBE_SLOPE = 2.0 / 0.4 + 3.0
 # Each of two cosines has five roundings. Oren and Nayar's model amplifies a cosine's error by up to
 # 22, which is 1 / 0.05 = 20 in the ratio s / t, 1 in s, and 1 in the factor cos(theta_i).
 TWO_COSINES = roundings(2 * 5 * (1.0 / RIM + 2.0), "(five in each of two cosines, times 22)")
-EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14, of numbers up to 2)"), TWO_COSINES)
+EXACT = sum_in(Quantity.DIFFERENCE, roundings(28, "(14 of numbers up to 2)"), TWO_COSINES)
 EXACT_ALBEDO = sum_in(Quantity.ALBEDO, roundings(21 * 1.02, "of numbers up to 1.02"))
 HALF = Tolerance((HALF_CUT, *EXACT.terms), Quantity.RELATIVE, relative, exact=True)
-HALF_MAPS = Term(2.0 * HALF_CUT.value, "half floats of map and picture, cut off")
+HALF_MAPS = Term(2.0 * HALF_CUT.value, "half floats in map and picture, truncated")
 HALF_ALBEDO = sum_in(Quantity.ALBEDO, HALF_MAPS, EXACT_ALBEDO.term("roundings"), exact=True)
 DRAWN_LOBE = LOBE_VALUE.plus(
-    roundings(16 / samples.LOBE_RIM**2, "of a pixel's point, over the least cosine squared, 1/16")
+    roundings(16 / samples.LOBE_RIM**2, "of a pixel's position, times the largest 1 / cosine^2, 16")
 )
 FOUR_PICTURES = Term(
-    96.0 * HALF_CUT.value, "half floats in four pictures, 48 times as large, half alike"
+    96.0 * HALF_CUT.value, "half floats in four pictures, times 48, of which half cancels"
 )
 HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=True)
 
@@ -673,7 +673,7 @@ HALF_LOBE = sum_in(Quantity.DIFFERENCE, FOUR_PICTURES, *DRAWN_LOBE.terms, exact=
 # to 2, so each of three roundings is at most 2^-23. At grazing views, the error of the point grows
 # by 1 / cos(theta_o). At grazing light, the relative error of a value grows by 1 / cos(theta_i).
 CYCLES_RAY = sum_of(
-    roundings(3.0 * 2.0 / RIM**2, "of a pixel's point, over the least cosine squared"),
+    roundings(3.0 * 2.0 / RIM**2, "of a pixel's position, times the largest 1 / cosine^2"),
     Term(1e-5, "a roughness that counts as 0"),
     quantity=Quantity.RELATIVE,
     metric=relative,
@@ -681,7 +681,7 @@ CYCLES_RAY = sum_of(
 # The noise was measured at 256 samples per pixel, with seeds 0 to 15, roughness 1 and reflectance
 # 1. The rms error of a pixel is 1.3e-3. The rms error of the mean of 3212 pixels is 3.1e-5, which
 # is 1.34 times the error expected for independent pixels.
-CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, each off by 1.3e-3, times 1.4"
+CYCLES_MEAN = "four standard errors of the mean of 12836 pixels, rms error 1.3e-3 each, times 1.4"
 CYCLES_NOISE = sum_of(
     Term(4.0 * 1.4 * 1.3e-3 / math.sqrt(12_836), CYCLES_MEAN),
     quantity=Quantity.MEAN_ALBEDO,
@@ -815,8 +815,8 @@ class Drawn(Spheres):
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
         """The tolerance of a value or an albedo in pictures, including rounding of two cosines."""
-        points = roundings(LOBE_SLOPE * 2 * 5 / RIM, "of two cosines of at least 0.05, times 8")
-        return sum_of(error.term("a number"), points, quantity=error.quantity)
+        points = roundings(LOBE_SLOPE * 2 * 5 / RIM, "(five in two cosines each, times 8 / 0.05)")
+        return sum_of(error.term("a value or albedo"), points, quantity=error.quantity)
 
 
 class Half(Drawn):
@@ -838,14 +838,14 @@ class Half(Drawn):
     @classmethod
     def drawn(cls, error: Tolerance) -> Tolerance:
         drawn = super().drawn(error)
-        return replace(drawn, terms=(drawn.term("a drawn number"), HALF_CUT), exact=True)
+        return replace(drawn, terms=(drawn.term("a pixel's value"), HALF_CUT), exact=True)
 
     unset = ("retroreflective",)  # Storm uses MaterialX 1.39.3, which lacks this input
 
 
 # The error of a pixel's point is three roundings of 2^-23, divided by a cosine of at least 0.05.
 PICTURE_RADIANCE = sum_of(
-    roundings(5 * 6 / RIM, "of a pixel's point, over the least cosine, times the slope 5"),
+    roundings(5 * 6 / RIM, "of a position, divided by the smallest cosine, times the slope 5"),
     roundings(8),
     quantity=Quantity.RADIANCE,
 )

@@ -66,7 +66,7 @@ class Case:
 
     def of(self, family: type[F]) -> F:
         """The spec, cast to the family of specs that a check applies to."""
-        assert isinstance(self.spec, family), f"{self.spec.title} is no {family.__name__}"
+        assert isinstance(self.spec, family), f"{self.spec.title} is not a {family.__name__}"
         return self.spec
 
     @property

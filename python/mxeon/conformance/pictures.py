@@ -60,11 +60,11 @@ FITTED_NODES = {row.category for row in PBR_NODES if row.fitted or row.mirror}
 HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 
 # Errors are weighted by cos(theta_o), because the normal changes by 1 / cos(theta_o) per pixel.
-POINT_AND_VALUE = roundings(16, "of a pixel's point"), roundings(32, "in the value")
+POINT_AND_VALUE = roundings(16, "of a pixel's position"), roundings(32, "in the value")
 PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
 # OpenGL permits image filters with weights of 8 bits. Neighboring texels differ by 1 at most.
-TEXTURED = single(2.0**-8, Quantity.PICTURE, "a filter's weights of 8 bits")
-CODES = f"filtered codes of sRGB, times its slope {SLOPE:.3g}"
+TEXTURED = single(2.0**-8, Quantity.PICTURE, "8-bit filter weights")
+CODES = f"filtered sRGB codes, times the slope {SLOPE:.3g} of sRGB"
 ENCODED = single(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)
 FITTED, SHADED = (
     Tolerance((each, microfacets.sum_over(256)), Quantity.FITTED_PICTURE, scaled, exact=True)
@@ -122,10 +122,10 @@ def _lobe_terms(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
     if films and not (direct and {each.category for each in lobes} == {"conductor_bsdf"}):
         terms.append(microfacets.FILM_SHOWN.term("a film's albedo, times the cosine of the view"))
         if any(np.any(each.get("thinfilm_ior", 2.0) < microfacets.LEAST_FILM) for each in inputs):
-            terms.append(microfacets.FILM_TRAPPED.term("a film of an index below 1.25"))
+            terms.append(microfacets.FILM_TRAPPED.term("a film with an IOR below 1.25"))
     dielectrics = (each.inputs for each in lobes if each.category == "dielectric_bsdf")
     if any(np.any(each.get("ior", 1.0) < 1.0) for each in dielectrics):
-        terms.append(microfacets.ERRORS["denser"].term("the throughput of an index below 1"))
+        terms.append(microfacets.ERRORS["denser"].term("the throughput for an IOR below 1"))
     if _stretched(lobes):
         terms.append(microfacets.ANISOTROPIC)
     fibers = product((each.inputs for each in lobes if each.category == HAIR), ROUGHNESSES)
@@ -137,7 +137,7 @@ def _lobe_terms(lobes: tuple[ShownLobe, ...], direct: bool) -> list[Term]:
         mu = np.linspace(1e-3, 1.0, 256)
         excess = float((mu * (conty_kulla_albedo_dir(mu, min(roughness)) - 1.0)).max())
         if excess > 0.0:
-            terms.append(Term(excess, "what a narrow sheen returns beyond all light"))
+            terms.append(Term(excess, "the excess of a narrow sheen's albedo over 1"))
     return terms
 
 
@@ -435,7 +435,7 @@ def generate_document(
     """
     target = host_row(host).target
     if not target:
-        raise NotRun(f"{host}: this renderer only has its own materials; it reads no documents")
+        raise NotRun(f"{host}: this renderer only has its own materials; it cannot read documents")
     if target not in TARGETS:
         raise NotRun(f"{host}: this MaterialX has no generator for {target}")
     shaders, _, reported = _read(lambda: generate(file, target, library=library, policy=policy))

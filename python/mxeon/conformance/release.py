@@ -39,7 +39,7 @@ from mxeon.shaders.released_graphs import differences, hidden, port_text, ports_
 from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
-CLAIM = "What has no model is as MaterialX released it, or has the same values."
+CLAIM = "Parts without a model are as MaterialX released them, or have the same values."
 SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes
 SIZE = 24  # width of the pictures that compare lobes
@@ -249,7 +249,7 @@ class Comparison:
                 remaining.append(others)
         if remaining:
             unevaluated = ", ".join(chain.from_iterable(remaining))
-            reason = f"written differently, and {MOST} others with other changes were evaluated"
+            reason = f"not evaluated: the limit of {MOST} different changes was reached"
             self.unjudged.append((unevaluated, reason))
         return causes
 
@@ -334,14 +334,14 @@ class Comparison:
                 return error
             if kinds <= SHADED and input_kinds.isdisjoint(SHADERS):
                 return self._picture_error(*(Subject(*each, released.getType()) for each in sides))
-        raise NotRun("its text is not MaterialX's, and nothing evaluates it")
+        raise NotRun("its code is not MaterialX's, and no check evaluates it")
 
     def _value_error(self, own: Subject, released: Subject) -> float:
         """The largest difference of values. Raise NotRun if `released` cannot be evaluated."""
         try:
             expected = self._values(released)
         except (DocumentError, ShaderError) as error:
-            raise NotRun(f"the released one cannot be evaluated: {error}") from None
+            raise NotRun(f"the released node cannot be evaluated: {error}") from None
         return largest_error(self._values(own), expected)
 
     def _values(self, subject: Subject) -> Array:
@@ -525,7 +525,7 @@ def check_release(
     """The result of comparing a library with the installed release, and the subjects not judged."""
     release = released(library)
     if release is None:
-        why = f"the library lacks nodes of MaterialX {mx.getVersionString()}: it is an older one"
+        why = f"the library lacks nodes of MaterialX {mx.getVersionString()}, so it is for an older version"
         return (), ((f"{SUBJECT} of {library}", why),)
     place = Result(RELEASE, CLAIM, SUBJECT, host.name, library, NOT_RUN)
     with TemporaryDirectory() as folder:

@@ -57,7 +57,7 @@ FUNCTION_CHECKS = (
                   r"\w+_pdf|ltc_(density|m[abcd])",
                   # A matrix entry has 8 roundings. An inverse fourth power multiplies the 8
                   # roundings by 4 and adds 16.
-                  tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(48, "four times the 8 of a matrix entry, and 16"))),
+                  tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(48, "(four times the 8 of a matrix entry, plus 16)"))),
     FunctionCheck("parts", "The functions that models and sampling are built from match NumPy's.",
                   r"\w+", PART),
 )

@@ -40,9 +40,9 @@ CLAIMS = {
                   Quantity.FUNCTIONS, "the first number of the OSL text is different"),
     "source": ("The generated source passes every input of the node to the function it calls.",
                Quantity.INPUTS, "each input in turn is 0"),
-    "clash": ("No two nodes define one name, so a shader can have any two of them.",
+    "clash": ("No two nodes define the same name, so a shader can use both.",
               Quantity.FUNCTIONS, "the source of one node is included by another"),
-    "arguments": ("The text for MDL passes every input to the argument that it has in MaterialX's release.",
+    "arguments": ("Generated MDL passes every input to the same argument as MaterialX's release.",
                   Quantity.INPUTS, "two arguments are exchanged"),
     "closure": ("The generated source calls the node's closure, with the right arguments and value.",
                 Quantity.FAULTS, "the weight of the lobe is dropped"),
@@ -251,7 +251,7 @@ def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
     def faults(inputs: Inputs) -> Iterator[Cause]:
         closure = _evaluated(expression, {**inputs, **flag}, FUNCTIONS)
         if not isinstance(closure, dict):
-            raise errors.ShaderError("the lobe is no closure")
+            raise errors.ShaderError("the lobe is not a closure")
         for name, value in expected.items():
             if not np.size(closure.get(name, ())):
                 yield Cause(Kind.DEFECT, "not_passed", (name,))

@@ -153,7 +153,8 @@ class Term(NamedTuple):
 
 def roundings(count: float, words: str = "") -> Term:
     """The error of `count` float32 roundings of numbers near 1. Each rounding is at most 2^-24."""
-    return Term(count * ROUNDING, f"{count:.3g} float32 roundings{words and ' '}{words}")
+    plural = "" if count == 1 else "s"
+    return Term(count * ROUNDING, f"{count:.3g} float32 rounding{plural}{words and ' '}{words}")
 
 
 @dataclass(frozen=True)

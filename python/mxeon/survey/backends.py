@@ -36,13 +36,13 @@ EXACT_INPUTS: tuple[samples.Values, ...] = (  # dark and bright colors, from rou
 # EEVEE stores three channels of light in 32 bits. The blue channel has the fewest bits.
 COARSE_FACETS = sum_in(
     Quantity.VALUE_OR_ALBEDO,
-    Term(2.0**-6, "five bits below the leading one, cut off"),
+    Term(2.0**-6, "five bits below the leading bit, truncated"),
     Term(2.4e-3, "packed normals, measured"),
 )
 FACET_NOISE = sum_of(
     Term(
         4.0 * 0.0716 / math.sqrt(FACET_PIXELS),
-        "four standard errors of the mean of 7169 pixels of 64 paths, each off by 0.0716 rms",
+        "four standard errors of the mean of 7169 pixels of 64 paths, rms error 0.0716 each",
     ),
     quantity=Quantity.MEAN_ALBEDO,
     metric=mean_error,

@@ -212,7 +212,7 @@ def diagnose(case: Case) -> results.Diagnosis:
 # fmt: off
 ROWS = (
     check.Check(key="client",
-          claim="A whole frame shows every light, the environment, shadow and occlusion that a client binds, and alpha.",
+          claim="A rendered frame has every light, the environment, shadows and occlusion that a client binds, and alpha.",
           applies=check.family(FrameSpec), measure=lambda case: (compared for _, compared in drawn(case)),
           tolerance="frame", control=controls.scale("values are 1 % too large", 1.01),
           explain=diagnose, hosts=lambda spec, host: bool(host_row(host).scenes),

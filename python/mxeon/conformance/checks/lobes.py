@@ -263,7 +263,7 @@ def factor(case: Case) -> Iterator[Compared]:
 
 
 TURN_FIBER = controls.with_inputs(
-    "the normal is turned about the fiber by a tenth", normal=(0.0, 0.1, 0.995)
+    "the normal is turned about the fiber by 0.1", normal=(0.0, 0.1, 0.995)
 )
 
 
@@ -322,7 +322,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     }
     if len(wrong) == 2 + LAYERS(spec):
         inside = f"{spec.title} already fails inside its inputs' usual ranges"
-        raise Implied(f"{case.host.name}: not measured, since {inside}")
+        raise Implied(f"{case.host.name}: not measured, because {inside}")
     batch = views.first(16)
     for port in spec.bounded:
         for value in port.beyond:
@@ -407,7 +407,7 @@ def negative(case: Case) -> Iterator[Compared]:
 # fmt: off
 ROWS = (
     Check(key="value",
-          claim="The value matches the model for every pair of directions, including back-lit and grazing ones.",
+          claim="The value matches the model for every pair of directions, including back-lit and grazing pairs.",
           applies=VALUED - BELOW, measure=VALUE, control=controls.gray, open=True),
     Check(key="lobe", claim="The diffuse lobe of the surface shader matches the model.",
           applies=LAMBERT | BELOW, measure=VALUE, control=controls.gray),
@@ -439,15 +439,15 @@ ROWS = (
               explain=lambda case: diagnosis.explain(case, list(sphere(case)), ON_SPHERES, (), RINGS),
               requires=Ability.LIGHT)
         for key, claim in (
-            ("sphere_mean", "On average, a sphere reflects the share of light that the profile predicts."),
+            ("sphere_mean", "On average, a sphere reflects the fraction of light that the profile predicts."),
             ("sphere", "On a sphere, light spreads as the diffusion profile predicts from radius and anisotropy."))
     ),
     Check(key="color_space",
-          claim="A color in sRGB has the value of the linear color that it stands for.",
+          claim="An sRGB color has the same value as the linear color that it encodes.",
           applies=family(ScatteringSpec, lambda spec: spec.flat), measure=COLOR_SPACE,
           control=controls.gray, requires=Ability.PAIRS),
     Check(key="throughput",
-          claim="An opaque node passes 1 - weight of the light from below in every branch, and no other light.",
+          claim="In every branch, an opaque node passes the fraction 1 - weight of the light from below.",
           applies=(PLAIN - LAYERS) | MODES,
           measure=lambda case: (each for row in ZEROS for each in opaque_values(case, *row)),
           tolerance=OPAQUE, control=controls.take_response,
@@ -469,7 +469,7 @@ ROWS = (
           control=controls.drop_changes,
           explain=lambda case: defect("inputs_without_effect", *dead_inputs(case))),
     Check(key="negative",
-          claim="A negative color counts as 0, or takes light away, as in MaterialX's own text.",
+          claim="A negative color counts as 0 or subtracts light, as in MaterialX's own code.",
           applies=(VALUED | COMBINED | TRANSMITTING) & family(LobeSpec, lambda spec: bool(colored(spec))),
           measure=negative, tolerance=sum_of(roundings(64, "of two values")),
           control=controls.with_batch("signs are dropped", unsigned),
@@ -482,39 +482,39 @@ ROWS = (
           explain=lambda case: Diagnosis(diagnosis.not_finite([edge_values(case)])),
           requires=Ability.PAIRS, hosts=shows_exactly),
     Check(key="layering",
-          claim="A layer passes 1 - E of the light from above, with E without its color, for every weight.",
+          claim="For every weight, a layer passes 1 - E of the light from above, where E ignores the layer's color.",
           applies=LAYERS | family(FilmSpec, lambda spec: spec.row.layerable), measure=THROUGHPUT,
           control=controls.pass_all, open=True),
     Check(key="transmission",
-          claim="A layer passes 1 - E of light that comes through the base, too.",
+          claim="A layer also passes 1 - E of the light that the base transmits.",
           applies=LAYERS, measure=TRANSMISSION, control=controls.pass_all, open=True),
     Check(key="dip",
-          claim="Where color82 lowers the reflectance, the layer passes on what it does not reflect.",
+          claim="Where color82 lowers the reflectance, the layer passes all light that it does not reflect.",
           applies=layers_with("color82"), measure=dip, control=controls.pass_all,
           explain=THROUGHPUT.diagnose, requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="denser",
-          claim="For indices below 1, where facets reflect totally, the throughput is 1 - E, too.",
+          claim="The throughput is also 1 - E for an IOR below 1, where facets reflect totally.",
           applies=layers_with("tint"), measure=denser, control=controls.pass_all,
           explain=THROUGHPUT.diagnose, requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="layer", claim="A white layer over a white base returns all light.",
           applies=LAYERS, measure=layer, tolerance="light", control=controls.pass_all,
           explain=THROUGHPUT.diagnose),
     Check(key="integral",
-          claim="Values integrate to the directional albedo that the equations give.",
+          claim="The integral of the values is the directional albedo of the model's equations.",
           applies=LOBES | MODES, measure=integral,
           control=controls.scale("values are 2 % too large", 1.02), explain=VALUE.diagnose, open=True),
-    Check(key="energy", claim="No albedo exceeds 1 or what the equations give.",
+    Check(key="energy", claim="No albedo exceeds both 1 and the albedo of the model's equations.",
           applies=LOBES, measure=energy, tolerance="integral",
           control=controls.scale("values are 100 times as large", 100.0), explain=VALUE.diagnose),
     Check(key="combination",
-          claim="Two combined lobes have the value that the node's equation gives.",
+          claim="The value of two combined lobes matches the node's equation.",
           applies=COMBINED, measure=VALUE, control=controls.shifted, requires=Ability.PAIRS, open=True),
     Check(key="combined_albedo",
           claim="The environment branch of two combined lobes returns their albedo.",
           applies=COMBINED, measure=ALBEDO, control=controls.shifted, requires=Ability.PAIRS,
           methods=finds_albedo, open=True),
     Check(key="combined_throughput",
-          claim="Two combined lobes pass on what they do not scatter, as the layer equation requires.",
+          claim="Two combined lobes pass the light that they do not scatter, as the layer equation requires.",
           applies=COMBINED,
           # Negative throughputs count as 0, because the node `layer` clamps throughputs to 0.
           measure=lambda case: (
@@ -534,7 +534,7 @@ ROWS = (
         for key, row in REGIONS.items()
     ),
     Check(key="domain",
-          claim="Inputs outside their usual range have the value, the albedo and the throughput of the model, too.",
+          claim="Value, albedo and throughput match the model also for inputs outside their usual range.",
           applies=family(PbrSpec, lambda spec: bool(spec.bounded)) - TRANSMITTING,
           measure=lambda case: (compared for *_, compared in outside(case)), tolerance=TOLERANCES,
           control=controls.scale("values are 30 % too large", 1.3), explain=diagnose_domain,

@@ -222,7 +222,7 @@ LEAST_PASSED = 0.01  # smallest transmitted light for which directions are measu
 # amplification by 1000. If a ray amplifies more, the error is divided by amplification / 1000.
 AMPLIFIED = 1000.0
 REFRACTED = lobes.SURROUNDINGS.plus(
-    roundings(4 * AMPLIFIED, "four of a cosine, times a slope of 1000")
+    roundings(4 * AMPLIFIED, "(four of a cosine, times a slope of 1000)")
 )
 NORMAL = np.array([0.0, 0.0, 1.0])
 MIRROR = np.array([-1.0, -1.0, 1.0])  # factors that mirror a direction about the normal
@@ -392,7 +392,7 @@ def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
             yield cause("mode_R_transmits"), Compared(batch, mode_R.transmitted(batch), 0.0 * ONE)
 
 
-OTHER_INDEX = controls.with_inputs("the index is different", ior=2.5, color0=(0.5, 0.5, 0.5))
+OTHER_INDEX = controls.with_inputs("the IOR is different", ior=2.5, color0=(0.5, 0.5, 0.5))
 
 
 def critical(case: Case) -> Compared:
@@ -638,7 +638,7 @@ def film_brushed(case: Case) -> Compared:
     """
     tolerance = case.tolerance("film_visible")
     if not case.control and tolerance.wrong(visible(microfacets.STEEP, case)).any():
-        raise Implied(f"{case.host.name}: not measured, since film_visible already differs")
+        raise Implied(f"{case.host.name}: not measured, because film_visible already differs")
     batch, expected = case.backend.take(case.of(FilmSpec).stretched)
     return Compared(batch, case.albedo(batch) / case.albedo(mirror_of(case, batch)), expected)
 
@@ -687,7 +687,7 @@ ROWS = (
           applies=FACETS, measure=lossless, tolerance="integral",
           control=controls.scale("values are 2 % too large", 1.02), explain=VALUE.diagnose),
     Check(key="dark",
-          claim="Where the printed curve of dark colors is below 0, nothing is reflected.",
+          claim="Where the published curve of a dark color is below 0, nothing is reflected.",
           applies=FACETS & family(FacetSpec, lambda spec: "color82" in spec.row.inputs), measure=dark,
           tolerance="value", control=controls.with_inputs("color82 is 1", color82=(1.0, 1.0, 1.0)),
           explain=replace(defect("curve_below_0"), permitted=True), requires=Ability.PAIRS,
@@ -709,23 +709,23 @@ ROWS = (
           control=controls.with_inputs("the tangent is dropped", tangent=(1.0, 0.0, 0.0)),
           explain=diagnosis.ignored("tangent"), requires=Ability.PAIRS),
     Check(key="sky",
-          claim="The reflection of an uneven environment is the integral of the values over it, also for retroreflection.",
+          claim="The reflection of an uneven environment is the integral of value times radiance, also for retroreflection.",
           applies=FACETS, measure=reflected_sky,
           control=controls.with_inputs("the flag is dropped", retroreflective=False),
           explain=diagnose_sky, requires=Ability.PAIRS | Ability.LIGHT, methods=with_directions),
     Check(key="anisotropic_albedo",
-          claim="The environment branch of an anisotropic lobe returns MaterialX's sum of its values, masked by the mean alpha; with the library's own sum, all that the lobe reflects.",
+          claim="The environment branch of an anisotropic lobe returns MaterialX's sum, masked by the mean alpha, or, with the library's own sum, the albedo.",
           applies=FACETS, measure=anisotropic_albedo, control=isotropic, requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: with_directions(spec, methods) or bool(methods.searched)),
-    Check(key="anisotropic_value", claim="The value of a lobe with two alphas matches the model.",
+    Check(key="anisotropic_value", claim="The value of an anisotropic lobe matches the model.",
           applies=FACETS | FILMS, measure=STRETCHED, control=isotropic,
           requires=Ability.PAIRS, open=True),
     Check(key="anisotropic_throughput",
-          claim="A lobe with two alphas passes to its base what it does not reflect.",
+          claim="An anisotropic lobe passes to its base the light that it does not reflect.",
           applies=family(FacetSpec, lambda spec: spec.row.layerable),
           measure=anisotropic_throughput, control=controls.pass_all, requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="transmitted",
-          claim="In a uniform environment, the light that passes lies between the BTDF's share and all that is not reflected.",
+          claim="In a uniform environment, the transmitted light lies between the BTDF's integral and all light that is not reflected.",
           applies=TRANSMITTING, measure=transmitted, tolerance="value",
           control=controls.scale("values are twice as large", 2.0), explain=diagnose_transmitted),
     Check(key="clear",
@@ -734,7 +734,7 @@ ROWS = (
           control=controls.scale("values are 5 % too large", 1.05),
           explain=diagnose_transmitted, methods=with_directions),
     Check(key="methods",
-          claim="With a prefiltered environment, and as opacity, the same light passes, and a mirror reflects it.",
+          claim="With a prefiltered environment and with opacity, the same light is transmitted, and a mirror reflects all light.",
           applies=TRANSMITTING | (lobes.PLAIN & family(FacetSpec, lambda spec: spec.model == "schlick")),
           measure=lambda case: (compared for _, compared in with_methods(case)),
           control=controls.scale("values are 10 % too large", 1.1),
@@ -750,38 +750,38 @@ ROWS = (
           applies=TRANSMITTING, measure=critical, control=OTHER_INDEX, explain=diagnose_transmitted,
           methods=lambda spec, methods: methods.transmission == "refraction" or CLEAR(spec)),
     Check(key="inside",
-          claim="From a denser medium passes what enters by the same paths; all other light is reflected.",
+          claim="A denser medium lets out the light that could enter along the same paths, and reflects all other light.",
           applies=family(TransmissionSpec, lambda spec: "ior" in spec.row.inputs), measure=inside,
-          control=controls.with_inputs("the index is that of the denser side", ior=1.5),
+          control=controls.with_inputs("the IOR is that of the denser side", ior=1.5),
           explain=diagnose_transmitted, methods=lambda spec, methods: methods == GENERATED),
     Check(key="refraction",
           claim="An uneven environment is looked up along the ray that a solid sphere refracts.",
           applies=TRANSMITTING, measure=refraction, tolerance=REFRACTED, control=OTHER_INDEX,
           requires=Ability.LIGHT, methods=lambda spec, methods: methods.transmission == "refraction"),
     Check(key="rough_refraction",
-          claim="Rough glass of two alphas looks an uneven environment up where its visible facets refract to.",
+          claim="Anisotropic rough glass looks up the environment in the directions to which its visible facets refract.",
           applies=TRANSMITTING, measure=rough_refraction, control=isotropic,
           explain=defect("other_refraction"), requires=Ability.PAIRS | Ability.LIGHT,
           methods=lambda spec, methods: methods == GENERATED),
     Check(key="transmitted_finite",
-          claim="All light through the surface is finite at the edges of the domain.",
+          claim="The transmitted light is finite at the edges of the domain.",
           applies=TRANSMITTING, measure=lambda case: count_not_finite(transmitted_edges(case)),
           tolerance=count_of(Quantity.VALUES), control=controls.no_number,
           explain=lambda case: Diagnosis(not_finite([transmitted_edges(case)]))),
     Check(key="transmitted_inputs",
-          claim="Every input except retroreflective changes the light through the surface.",
+          claim="Every input except retroreflective changes the transmitted light.",
           applies=TRANSMITTING, measure=lambda case: count_named(wrong_inputs(case)),
           tolerance=count_of(Quantity.INPUTS), control=controls.drop_changes,
           explain=lambda case: defect("wrong_effect", *wrong_inputs(case)), requires=Ability.LIGHT),
     FILM(key="film_curve",
          claim="Under a film, a smooth lobe reflects the Airy reflectance at the cosine of the view.",
          measure=partial(curves, microfacets.SHARP)),
-    FILM(key="film_orders", claim="At grazing angles, a thin film reflects the sum of all orders.",
+    FILM(key="film_orders", claim="At grazing angles, a thin film reflects the sum of all interference orders.",
          measure=partial(curves, microfacets.ORDERED), requires=NO_ABILITY),
     FILM(key="film_limit",
-         claim="A film with an index of 1 or less, or with almost no thickness, leaves the lobe unchanged.",
+         claim="A film with an IOR of 1 or less, or with almost no thickness, leaves the lobe unchanged.",
          measure=film_limit,
-         control=controls.with_inputs("every film has an index of 1.5", thinfilm_ior=1.5)),
+         control=controls.with_inputs("every film has an IOR of 1.5", thinfilm_ior=1.5)),
     FILM(key="film_energy", claim="No film reflects more than a lobe that reflects everything.",
          measure=film_energy, open=False,
          control=controls.with_values(
@@ -790,17 +790,17 @@ ROWS = (
     FILM(key="film_average",
          claim="The compensation uses the film's reflectance averaged over the hemisphere.",
          measure=film_average, explain=diagnose_average),
-    FILM(key="film_smooth", claim="On smooth lobes, too, the compensation uses the film's average.",
+    FILM(key="film_smooth", claim="The compensation of smooth lobes also uses the film's average reflectance.",
          measure=film_smooth, explain=diagnose_average),
     FILM(key="film_visible",
          claim="The albedo averages the film's reflectance over the visible, lit facets.",
          measure=partial(visible, microfacets.STEEP), explain=diagnose_visible, methods=with_directions),
     FILM(key="film_brushed",
-         claim="In an environment, a lobe of two alphas under a film reflects the film's share of what a mirror does.",
+         claim="In an environment, an anisotropic lobe under a film reflects the film's reflectance times what a mirror reflects.",
          measure=film_brushed, tolerance="anisotropic_throughput", explain=UNEXPLAINED,
          requires=Ability.PAIRS | Ability.LIGHT, open=False, methods=with_directions),
     FILM(key="film_glossy",
-         claim="On glossy lobes, too, the albedo averages the film's reflectance over the visible facets.",
+         claim="The albedo of glossy lobes also averages the film's reflectance over the visible facets.",
          measure=partial(visible, microfacets.GLOSSY), explain=diagnose_visible, methods=with_directions),
 )
 # fmt: on

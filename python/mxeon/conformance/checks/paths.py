@@ -128,7 +128,7 @@ SOLIDS: dict[str, tuple[Values, dict[str, Array]]] = {
 }
 SIDES = ("outside", "inside")  # sides of a solid's surface
 SUMMED = 1 << 12  # number of samples whose weights are summed
-DRAWN_SUM = Term(5e-3, "a sum of 4096 draws")
+DRAWN_SUM = Term(5e-3, "a sum of 4096 samples")
 
 
 @dataclass(frozen=True)
@@ -382,7 +382,7 @@ def parts(case: Case) -> Iterator[tuple[Cause, Compared]]:
 SAMPLE = sum_of(
     roundings(
         16,
-        "of a weight and a density, times 1 + the inverses of the lobe's own alpha, its cosine and 1000 weights",
+        "of a weight and a density, times 1 + 1 / alpha of the lobe + 1 / cosine + 1 / (1000 weight)",
     ),
     quantity=Quantity.DRAWN,
 )
@@ -670,51 +670,51 @@ PATHS = partial(
 # fmt: off
 ROWS = (
     PATHS(key="pdf",
-          claim="A path tracer draws by the density that it states, which integrates to the share of draws it keeps.",
+          claim="A path tracer samples the density that it returns, which integrates to the fraction of samples it keeps.",
           applies=DRAWN, measure=pdf,
           tolerance=single(
               MOST_DEVIATIONS, Quantity.DEVIATIONS,
               "chance reaches 6 once in 10^7 draws of a chi-square"),
           control=controls.with_values(
-              "a tenth of the density is that of a lobe, even in all directions, that is never drawn",
+              "a tenth of the density is that of a uniform lobe that is never sampled",
               lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi)),
           explain=lambda case: diagnosis.defect(
               "drawn_density",
               *dict.fromkeys(
                   SIDES[inside] for score, inside, _ in scores(case) if score > MOST_DEVIATIONS))),
     PATHS(key="sample",
-          claim="A draw's weight times its density is the value in its direction, and its density that of material_pdf.",
+          claim="A sample's weight times its density is the value in its direction, and the density is that of material_pdf.",
           applies=DRAWN, measure=lambda case: (compared for _, compared in parts(case)), tolerance=SAMPLE,
           control=controls.scale("weights are 0.01 % too large", 1.0001),
           explain=lambda case: diagnosis.causes_of(parts(case), SAMPLE)),
     PATHS(key="path_value",
-          claim="A path tracer's value, opacity and emission are the rasterizer's, in any frame.",
+          claim="A path tracer's value, opacity and emission equal the rasterizer's, in any frame.",
           applies=DRAWN - DARK, measure=path_value,
           tolerance=sum_of(roundings(
-              64, "of two directions and their frame, times 1 + the inverse of the lobe's own alpha")),
+              64, "of two directions and their frame, times 1 + 1 / alpha of the lobe")),
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=diagnosis.defect("other_path_value"),
           methods=lambda spec, methods: not methods.distributed),
     PATHS(key="path_emission",
-          claim="A path tracer's emission is the node's equation, from both sides of surfaces along each axis.",
+          claim="A path tracer's emission matches the node's equation on both sides of surfaces along each axis.",
           applies=check.family(emission.EmissionSpec), measure=path_emission, tolerance="value",
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=diagnosis.defect("other_path_emission"), requires=NO_ABILITY),
     PATHS(key="path_random",
-          claim="The random numbers of a tracer's text are those of pcg4d.",
+          claim="The random numbers of path-tracing code are those of pcg4d.",
           applies=check.family(LobeSpec, lambda spec: spec.node == "eon_diffuse_bsdf"), measure=path_random,
           tolerance=single(0.0, Quantity.VALUE, "the same bits"),
           control=controls.scale("numbers are half as large", 0.5),
           explain=diagnosis.defect("other_random_numbers")),
     PATHS(key="path_inside",
-          claim="Light inside a solid is reflected and refracted as outside of one of the inverse index.",
+          claim="Light inside a solid is reflected and refracted as outside a solid with the inverse IOR.",
           applies=GLASSY & check.Specs(lambda spec: spec.node in GLASS), measure=path_inside,
           tolerance=sum_of(roundings(
-              256, "of an index that OpenPBR takes from its reflectance, near a critical angle")),
+              256, "of an IOR that OpenPBR computes from the reflectance, near a critical angle")),
           control=controls.scale("values are 0.1 % too large", 1.001),
           explain=diagnosis.defect("inside_is_not_outside")),
     PATHS(key="path_albedo",
-          claim="Draws from outside carry the light that a rasterizer reflects and transmits.",
+          claim="Samples from outside carry as much light as a rasterizer reflects and transmits.",
           applies=SURFACES, measure=path_albedo,
           tolerance=ALBEDO.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
@@ -722,12 +722,12 @@ ROWS = (
           methods=lambda spec, methods: (
               with_directions(spec, methods) and methods.transmission == "refraction")),
     PATHS(key="path_energy",
-          claim="Draws at a clear solid carry all light, from outside and from inside.",
+          claim="Samples at a clear solid carry all light, from outside and from inside.",
           applies=CLEAR, measure=path_energy, tolerance=PASSING.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
           explain=diagnosis.defect("light_from_inside")),
     PATHS(key="path_leaving",
-          claim="From inside a clear solid, draws that leave it carry what enters by the same paths.",
+          claim="Samples that leave a clear solid carry the light that could enter along the same paths.",
           applies=CLEAR, measure=path_leaving, tolerance=THROUGHPUT.plus(DRAWN_SUM),
           control=controls.scale("values are 10 % too large", 1.1),
           explain=diagnosis.defect("light_from_inside")),

@@ -308,7 +308,7 @@ def pixels_of(backend: backends.Backend) -> tuple[Pixels, ...]:
 
 
 exchanged = controls.with_batch(
-    "each pixel has the view and the light of another",
+    "each pixel has another pixel's view and light",
     lambda batch: replace(batch, wo=np.roll(batch.wo, 1, axis=0), wi=np.roll(batch.wi, 1, axis=0)),
 )
 
@@ -511,7 +511,7 @@ def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> se
 # fmt: off
 ROWS = (
     check.Check(key="states",
-          claim="Lights, environments and lobes add up in a pixel, in every frame, whether inputs vary or not.",
+          claim="A pixel's light is the sum over lights, environments and lobes, in every frame, whether inputs vary or not.",
           applies=check.family(LobeSpec), measure=states, control=exchanged,
           explain=diagnose, requires=Ability.PAIRS,
           # If opacity replaces refraction, a lobe in mode T passes the same light at every view, so

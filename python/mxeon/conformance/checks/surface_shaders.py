@@ -137,7 +137,7 @@ def without_effect(case: Case) -> list[str]:
     rows = [row for changes in spec.changes.values() for row in changes]
     names = dict.fromkeys(name for row in rows for name in row)
     if missing := ", ".join(name for name in names if name not in defaults):
-        raise NotRun(f"{spec.node} of this MaterialX lacks an input that is varied: {missing}")
+        raise NotRun(f"{spec.node} of this MaterialX lacks an input to vary: {missing}")
     inputs = {name: np.asarray(defaults[name]) for name in names}
     few = replace(case.backend.batches[0].first(CHANGED), inputs=inputs)
     batch = backends.joined([few.altered(**row) for row in rows])
@@ -230,7 +230,7 @@ ROWS = (
           control=controls.scale("every value is 50 % too high", 1.5), explain=SUM,
           requires=Ability.LIGHT, methods=finds_albedo),
     Check(key="glass",
-          claim="Clear glass reflects and transmits the shares of a white environment that its lobes have by the layer equation.",
+          claim="In a white environment, clear glass reflects and transmits what its lobes do by the layer equation.",
           applies=SURFACES, measure=glass, control=controls.scale("values are 5 % too large", 1.05),
           explain=SUM, requires=Ability.LIGHT),
     Check(key="reach",

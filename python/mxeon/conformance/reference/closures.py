@@ -91,7 +91,7 @@ class Views:
     def _lobe(self, closure: ClosureTree, row: PbrNode, layered: bool) -> Bsdf:
         """A single lobe; as MaterialX specifies, the throughput is 1 minus the untinted albedo."""
         if (facets := closure.arguments.get("distribution", GGX)) != GGX:
-            rule = f"must be {GGX}, as that of the node; got {facets}"
+            rule = f"must be {GGX}, as in the node; got {facets}"
             raise ShaderError(f"osl: distribution of {closure.name} {rule}")
         names = ("normal", "curve_direction" if closure.name == HAIR else "tangent")
         normal, tangent = (
@@ -100,7 +100,7 @@ class Views:
         )
         opposite = np.abs(normal + self.points.normal).max(axis=1) < ROUNDED
         if np.any(opposite & ((self.points.wo * self.points.normal).sum(axis=1) > ROUNDED)):
-            rule = "must be the node's, or face the viewer; got the opposite"
+            rule = "must be the node's or face the viewer; got the opposite direction"
             raise ShaderError(f"osl: normal of {closure.name} {rule}")
         if names[1] not in closure.arguments:  # use a vector that is not parallel to the normal
             tangent = np.where(np.abs(normal[:, :1]) > 0.9, UP, ALONG)

@@ -298,9 +298,9 @@ class Graph(Nodes):
             raise NotRun("reference: images are read at the sphere's own coordinates only")
         file = node.getInput("file")
         if not file or not file.getValueString():
-            raise NotRun("reference: an image must name its file itself")
+            raise NotRun("reference: an image must have its own file name")
         if file.hasUnit():
-            raise NotRun("reference: an image must hold no lengths")
+            raise NotRun("reference: an image of lengths has no reference")
         channels = CHANNELS.get(node.getType(), 0)
         values = texels_at(file.getValueString(), self._points.texcoord.tobytes())
         if not 0 < channels <= values.shape[-1]:

@@ -220,8 +220,8 @@ class ShadingPoints:
         if series is not None:
             return _interpolated(series, wo, low, turns)
         if not turns:
-            lobe = "the albedo of so anisotropic a lobe"
-            raise NotRun(f"reference: {lobe} takes too long over a picture")
+            lobe = "the albedo of such an anisotropic lobe"
+            raise NotRun(f"reference: {lobe} takes too long for a picture")
         # Round the cosines, because equal cosines of symmetric points on a sphere differ slightly.
         mu = np.asarray(np.round(np.minimum(wo[:, 2], 1.0), 13), np.float64)
         upright = _directions(mu, np.zeros(len(mu)))
@@ -388,7 +388,7 @@ def plain(value: Plain) -> Array | bool | str | None:
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, (mx.Matrix33, mx.Matrix44)):
-        raise NotRun("reference: no node computes with a matrix here")
+        raise NotRun("reference: matrix values are not supported")
     return np.asarray(value if isinstance(value, (int, float)) else tuple(value), dtype=np.float64)
 
 

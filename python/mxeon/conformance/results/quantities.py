@@ -32,7 +32,7 @@ class Quantity(Enum):
     REFLECTANCE = "reflectance", "reflectance"
     REFLECTANCE_RMS = "reflectance_rms", "reflectance, rms"
     # Quantities of incident, transmitted or emitted light.
-    LIGHT = "light", "light", "1 is all of the light"
+    LIGHT = "light", "light", "1 is all light"
     THROUGHPUT = "throughput", "throughput", "a throughput of 1 passes all light"
     TRANSMITTANCE = "transmittance", "transmittance"
     IRRADIANCE = "irradiance", "irradiance", "1 is a white environment"
@@ -45,7 +45,7 @@ class Quantity(Enum):
     EXTINCTION = "extinction", "k^2 (1 - r) / (n_max + 1)^2"
     DENSITY = "density", "1/sr, relative above 1"
     DEVIATIONS = "deviations", "standard deviations"
-    DRAWN = "drawn", "of the value, over the slope of the lobe"
+    DRAWN = "drawn", "relative, divided by the lobe's slope"
     CONDITIONED = "conditioned", "over 1, the value, and its change with each argument"
     TOLERANCES = "tolerances", "tolerances"
     # Counts of faults.

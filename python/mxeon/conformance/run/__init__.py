@@ -258,7 +258,7 @@ def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
     for row in HOSTS:
         if row.target and row.target not in targets:
             targets.add(row.target)
-            yield row.target, f"needs {row.needs}" if row.needs else "no host of it ran"
+            yield row.target, f"needs {row.needs}" if row.needs else "no host for it ran"
 
 
 @contextmanager

@@ -370,7 +370,7 @@ def unjudged(library: str) -> tuple[tuple[str, str], ...]:
     own, stock = (load_library(each).getNodeDefs() for each in (library, "stock"))
     names = {each.getNodeString() for each in own if each.getType() in LIT}
     names -= {*node_names(), *(each.getNodeString() for each in stock)}
-    return tuple((name, f"no model of a node that {library} adds") for name in sorted(names))
+    return tuple((name, f"{library} adds this node, which has no model") for name in sorted(names))
 
 
 def diffuse_specs(library: str) -> list[diffuse.DiffuseSpec]:

@@ -44,7 +44,5 @@ class FrameSpec(Spec):
 CLIENT_FRAME = FrameSpec(
     title="surface, a client's frame",
     node="surface",
-    errors={
-        "frame": sum_of(roundings(64, "of directions, distances and powers, four lights in all"))
-    },
+    errors={"frame": sum_of(roundings(64, "of directions, distances and powers of four lights"))},
 )

@@ -30,12 +30,12 @@ LOSS_FIT = 2.7e-7  # relative error of the fit of H, the loss of FON (tools/fits
 
 VALUE = sum_in(
     Quantity.DIFFERENCE,
-    roundings(28, "(14, of numbers up to 2)"),
+    roundings(28, "(14 of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
 # The 16 roundings are 12 in the longest chain of operations, two in the cosine, and two for the fit
 # of H.
-LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, the fit of H among them")
+LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, including the fit of H")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
 # A rounding of a cosine of at least 1/4 is amplified by 4 in Oren and Nayar's ratio s / t, by 3 in
 # a sine, and by 2 in other factors, which is 9 in all.

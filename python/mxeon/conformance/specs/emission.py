@@ -96,14 +96,14 @@ CONE_ROUNDINGS = 12
 # fmt: off
 ERRORS = {
     "conical": sum_of(
-        roundings(2 * CONE_ROUNDINGS, "relative to 1 and the slope, of colors up to 2"),
+        roundings(2 * CONE_ROUNDINGS, "of colors up to 2, relative to 1 + the slope"),
         quantity=Quantity.RADIANCE_SLOPE),
     "schlick_emission": sum_of(
         roundings(2 * 8), roundings(2 * EXPONENTS[1], "of a color of 2 to the power of 20"),
         quantity=Quantity.RADIANCE),
 }
 # fmt: on
-UNIFORM = sum_of(roundings(6, "three of each emission and its factor"), quantity=Quantity.RADIANCE)
+UNIFORM = sum_of(roundings(6, "(three per emission and its factor)"), quantity=Quantity.RADIANCE)
 OPACITY = sum_of(roundings(3), quantity=Quantity.RADIANCE)
 
 

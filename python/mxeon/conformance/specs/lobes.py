@@ -33,7 +33,7 @@ def lobe_errors(
     value: Tolerance, albedo: Tolerance, throughput: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
     """Tolerances of a lobe; `quadrature` is the error of an albedo integrated from exact values."""
-    sums = Term(quadrature, "the quadrature on the equations")
+    sums = Term(quadrature, "the quadrature of the equations")
     integral = sum_in(Quantity.ALBEDO, value.term("an average of values"), sums)
     light = integral.term("an albedo"), throughput.term("a throughput")
     return {
@@ -247,9 +247,9 @@ def _throughput(
 
 
 BURLEY_VALUE = sum_of(
-    roundings(2 * 17 + 7, "of the value or 1: 17 in each factor, 7 in the products")
+    roundings(2 * 17 + 7, "of max(value, 1): 17 in each factor, 7 in the products")
 )
-FLAT_ALBEDO = sum_of(roundings(32, "of the albedo or 1"), quantity=Quantity.ALBEDO)
+FLAT_ALBEDO = sum_of(roundings(32, "of max(albedo, 1)"), quantity=Quantity.ALBEDO)
 FLAT_ERRORS = lobe_errors(BURLEY_VALUE, FLAT_ALBEDO, FLAT_ALBEDO, FLAT_FRAME, quadrature=1e-8)
 
 

@@ -108,26 +108,26 @@ def sum_over(directions: int) -> Term:
 
 
 HALF_TEXEL = math.sqrt(2.0) * math.pi / (2 * samples.SKY_ROWS)
-TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, half of one away")
+TEXEL = Term(samples.SLOPE * HALF_TEXEL, "the nearest texel, up to half a texel away")
 
 # Errors of two fits for anisotropic GGX (ggx_anisotropic.py): the relative error of E_ss, and the
 # error of a dielectric's albedo. Both errors apply to alpha ratios up to 50 and cosines from 0.01.
 ANISOTROPIC_FIT, ANISOTROPIC_LOBE_FIT = 2.5e-2, 3.4e-2
 LARGEST_RATIO, LEAST_ANISOTROPIC_COSINE = 50.0, 0.01
-ANISOTROPIC = Term(ANISOTROPIC_FIT, "the fit of E_ss of two alphas")
-ANISOTROPIC_LOBE = Term(ANISOTROPIC_LOBE_FIT, "the fit of the lobe's albedo of two alphas")
-ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss over the least, 0.31")
+ANISOTROPIC = Term(ANISOTROPIC_FIT, "the anisotropic fit of E_ss")
+ANISOTROPIC_LOBE = Term(ANISOTROPIC_LOBE_FIT, "the anisotropic fit of the lobe's albedo")
+ESS = Term(ESS_FIT / LEAST_ESS, "the fit of E_ss, divided by 0.31, the smallest E_ss")
 COMPENSATION = (ESS, Term(METAL_FIT * (1.0 - LEAST_ESS), "the fit of F_ss, times 1 - E_ss"))
 LOBE = Term(LOBE_FIT, "the fit of the lobe's albedo")
-INSIDE = Term(INSIDE_FIT, "the fit of the albedo of an index below 1")
-PASSING_SHARE = Term(PASSING_FIT, "the fit of the share that passes from the denser side")
+INSIDE = Term(INSIDE_FIT, "the fit of the albedo for an IOR below 1")
+PASSING_SHARE = Term(PASSING_FIT, "the fit of the light that passes from the denser side")
 PASSING = sum_in(Quantity.ALBEDO, PASSING_SHARE)
-HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit of the dip at 82 degrees")
+HALF_DIP = Term((1.0 - samples.LEAST_COLOR82) * DIP_FIT, "half of the fit's error at 82 degrees")
 
 
 def compensated(average: float, words: str) -> Tolerance:
     """Tolerance of values with compensation if F_ss has the error `average`."""
-    fit = Term(ESS_VALUE_FIT, "the fit of E_ss over E_ss")
+    fit = Term(ESS_VALUE_FIT, "the fit of E_ss, divided by E_ss")
     return sum_of(fit, Term(COMPENSATED * average, f"{words}, times 0.6"), exact=True)
 
 
@@ -143,20 +143,20 @@ SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
 FRAME = sum_of(
     roundings(
         2 * 2 * 5 / (2 * samples.TURNED[0] * samples.LEAST_TURNED),
-        "of two directions, five each, over twice the least cosine and the least alpha",
+        "(five in each of two directions, divided by the smallest cosine and alpha)",
     )
 )
-WEAK = "the fit of a cosine at index 1.03, scaled"
-A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss in three cosines,"
+WEAK = "the fit of a cosine at IOR 1.03, scaled"
+A_COSINE, THREE_COSINES = "the fit of a cosine, which", "F_ss from three cosines,"
 # Errors outside the domains of the fits. Each row has a quantity, an input, a value of the input,
 # an error, and the cause of the error.
 BEYOND: tuple[tuple[str, str, float, float, str], ...] = (
     ("throughput", "ior", 1.0015, 9.3e-3, WEAK),
     ("throughput", "ior", 1.02, 2.9e-3, WEAK),
-    ("throughput", "ior", 4.0, 0.03, f"{A_COSINE} ends at index 3"),
-    ("throughput", "ior", 10.0, 0.1, f"{A_COSINE} ends at index 3"),
-    ("throughput", "ior", 100.0, 0.17, f"{A_COSINE} ends at index 3"),
-    ("throughput", "ior", 0.2, 0.07, "the fit from inside, which ends at index 0.33"),
+    ("throughput", "ior", 4.0, 0.03, f"{A_COSINE} ends at IOR 3"),
+    ("throughput", "ior", 10.0, 0.1, f"{A_COSINE} ends at IOR 3"),
+    ("throughput", "ior", 100.0, 0.17, f"{A_COSINE} ends at IOR 3"),
+    ("throughput", "ior", 0.2, 0.07, "the fit from inside, which ends at IOR 0.33"),
     ("throughput", "exponent", 20.0, 0.09, f"{A_COSINE} ends at exponent 10"),
     ("throughput", "exponent", 100.0, 0.23, f"{A_COSINE} ends at exponent 10"),
     ("throughput", "exponent", 0.5, 0.05, f"{A_COSINE} begins at exponent 1"),
@@ -182,7 +182,7 @@ ERRORS = {
     "retroreflection": lobes.BURLEY_VALUE,
     "anisotropy": sum_of(roundings(
         2 * 2 * 2 / (2 * LEAST_TANGENT_COSINE * LEAST_TANGENT_ALPHA),
-        "of two directions, two each, over twice the least cosine and the least alpha")),
+        "(two in each of two directions, divided by the smallest cosine and alpha)")),
     "dip": sum_in(Quantity.ALBEDO, HALF_DIP),
     "denser": sum_in(Quantity.ALBEDO, INSIDE, ESS),
 }
@@ -194,9 +194,9 @@ PREFILTERED = Term(5.06e-2, "MaterialX's fit of prefiltered light")
 
 
 def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
-    quadrature = Term(QUADRATURE, "the quadrature on the equations")
-    words = "the quadrature on the equations, of a value and of its share of the sky"
-    few = Term(1.6 / 64, "a sum over 64 directions by MaterialX's points")
+    quadrature = Term(QUADRATURE, "the quadrature of the equations")
+    words = "the quadrature of the equations, of a value and of its part of the sky"
+    few = Term(1.6 / 64, "a sum over MaterialX's 64 directions")
     return {
         **ERRORS,
         **lobes.lobe_errors(MEAN, ENVIRONMENT, throughput, FRAME, QUADRATURE),
@@ -410,8 +410,8 @@ FRESNEL_SLOPE = 7.3
 
 def transmission_errors(passed: Tolerance) -> dict[str, Tolerance]:
     reflected, lit = ENVIRONMENT.term("a reflected albedo"), passed.term("light that passes")
-    smooth = Term(SMOOTH_ESS_FIT, "the fit of E_ss of smooth lobes")
-    steep = roundings(4 * FRESNEL_SLOPE, "of a cosine, times a Fresnel curve's largest slope, 7.3")
+    smooth = Term(SMOOTH_ESS_FIT, "the fit of E_ss for smooth lobes")
+    steep = roundings(4 * FRESNEL_SLOPE, "(four of a cosine, times the Fresnel slope 7.3)")
     return {
         "methods": passed.plus(PREFILTERED),
         "value": passed,  # the values of this spec are transmitted light
@@ -489,17 +489,17 @@ CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 in a phase, times the curve's slope 9.5, p
 
 FILM_ALBEDO = sum_in(
     Quantity.ALBEDO,
-    Term(FILM_OILED, "the mean over visible facets and F_ss, in three cosines each"),
+    Term(FILM_OILED, "the mean over visible facets and F_ss, from three cosines each"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
 # If a metal has a lower IOR than the film, light is totally reflected, and three cosines do not
 # resolve the fringes.
-FILM_TRAPPED = single(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films of a lower index than 1.25")
+FILM_TRAPPED = single(FILM_SEEN - FILM_OILED, Quantity.ALBEDO, "films with an IOR below 1.25")
 
 # In a picture, the error at each point is weighted by the view's cosine.
 FILM_SHOWN = sum_in(
     Quantity.PICTURE,
-    Term(2.59e-2, "FILM_ALBEDO's, times the cosine"),
+    Term(2.59e-2, "the mean over visible facets and F_ss, times the cosine"),
     Term(ESS_FIT, "the fit of E_ss"),
 )
 FILM_AVERAGE = 3.61e-2  # largest error of a film's F_ss that is computed from three cosines
@@ -510,7 +510,7 @@ def film_terms(alpha: float) -> tuple[Term, Term]:
     mu = np.linspace(1e-3, 1.0, 64)
     E = ggx_albedo_dir(mu, alpha)
     lost = min(COMPENSATED, float((mu * (1.0 - E) / E).max()))
-    return Term(FILM_AVERAGE * lost, f"a film's F_ss in three cosines, times {lost:.2g}"), UNSUMMED
+    return Term(FILM_AVERAGE * lost, f"film F_ss from three cosines, times {lost:.2g}"), UNSUMMED
 
 
 def _mean(value: float, words: str) -> Tolerance:
@@ -519,34 +519,34 @@ def _mean(value: float, words: str) -> Tolerance:
 
 
 # Omitted orders of interference matter most for thin films on metals at grazing views.
-UNSUMMED = Term(8e-4, "orders that are not summed")
-FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss in three cosines").terms, UNSUMMED)
+UNSUMMED = Term(8e-4, "omitted interference orders")
+FILM_VALUE = sum_of(*compensated(FILM_AVERAGE, "F_ss from three cosines").terms, UNSUMMED)
 # fmt: off
 FILM_ERRORS = {
     "value": FILM_VALUE,
     "anisotropic_value": FILM_VALUE.plus(ANISOTROPIC),
     "albedo": FILM_ALBEDO,
     "throughput": FILM_ALBEDO,
-    "anisotropic_throughput": _mean(6e-3, "the fits of two alphas, over 24 sets of 32 films of 50 to 100 nm"),
+    "anisotropic_throughput": _mean(6e-3, "the anisotropic fits, over 24 sets of 32 films of 50 to 100 nm"),
     "film_curve": sum_in(
         Quantity.REFLECTANCE,
-        Term(2.4e-6, "orders that are not summed, from 200 nm and a cosine of 0.3 on"),
+        Term(2.4e-6, "omitted interference orders, from 200 nm and a cosine of 0.3 on"),
         Term(0.65 * 2.8e-5, "the fit of E_ss at alpha 1e-3, times F (1 - F_ss)"),
-        roundings(CURVE_ROUNDINGS, "of phases, times the slope 9.5, and 16")),
+        roundings(CURVE_ROUNDINGS, "(10 in a phase, times the slope 9.5, plus 16)")),
     "film_orders": sum_of(
-        Term(8.7e-7, "orders that are not summed, rms over 1024 films of 40 to 100 nm"),
+        Term(8.7e-7, "omitted interference orders, rms over 1024 films of 40 to 100 nm"),
         Term(1.5e-4, "the fit of E_ss at alpha 1e-3 and cosines of 0.1 to 0.2"),
         quantity=Quantity.REFLECTANCE_RMS, metric=tolerance.root_mean_square),
     # With any film, even a film without effect, shaders compute F_ss from three cosines. Without a
     # film, shaders compute F_ss by a fit.
-    "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss in three cosines, times 0.6")),
+    "film_limit": sum_of(Term(4.4e-3 * COMPENSATED, "F_ss from three cosines, times 0.6")),
     "film_energy": VALUE,
     "retroreflection": lobes.BURLEY_VALUE,
-    "film_average": _mean(7e-3, "F_ss in three cosines of films of 50 to 1000 nm"),
-    "film_smooth": _mean(1e-5, "F_ss in three cosines, times what a lobe of alpha 0.04 loses"),
-    "film_visible": _mean(1.9e-3, "visible facets in three cosines, films of 50 to 100 nm"),
-    "film_glossy": _mean(1.1e-3, "visible facets in three cosines, alpha 0.03 to 0.1"),
-    "frame": FRAME.plus(roundings(2 * CURVE_ROUNDINGS, "of two values, phases times 9.5")),
+    "film_average": _mean(7e-3, "F_ss from three cosines, for films of 50 to 1000 nm"),
+    "film_smooth": _mean(1e-5, "F_ss from three cosines, times the light lost at alpha 0.04"),
+    "film_visible": _mean(1.9e-3, "visible facets from three cosines, for films of 50 to 100 nm"),
+    "film_glossy": _mean(1.1e-3, "visible facets from three cosines, for alpha 0.03 to 0.1"),
+    "frame": FRAME.plus(roundings(2 * CURVE_ROUNDINGS, "(10 in a phase, times 9.5, plus 16, in each of two values)")),
 }
 # fmt: on
 

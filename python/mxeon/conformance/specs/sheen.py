@@ -22,16 +22,16 @@ FIT_COSINE = 1e-4  # smallest cosine in the domains of the albedo fits
 EXPONENT = 1.0 / samples.LEAST_SHEEN  # largest exponent of the sine in Conty and Kulla's sheen
 
 ZELTNER_VALUE = sum_of(
-    roundings(48, "of the value or 1: an inverse fourth power takes the 8 of a length four times"),
-    roundings(10 * 11.6, "in the exponent of the albedo, 11.6 where values are about 1"),
+    roundings(48, "of max(value, 1): 4 x 8 in the inverse fourth power of a length, and 16"),
+    roundings(10 * 11.6, "(10 in the albedo's exponent, 11.6 where values are about 1)"),
 )
-CLOSED = roundings(32, "of the albedo or 1: 20 in an exponent, times 0.6, and 20 beside it")
+CLOSED = roundings(32, "of max(albedo, 1): 20 in an exponent, times 0.6, and 20 outside")
 ZELTNER_ALBEDO = ZELTNER_THROUGHPUT = sum_of(CLOSED, quantity=Quantity.ALBEDO)
 LOGARITHM = 4 * 0.5 / samples.LEAST_SHEEN  # four roundings divided by twice the smallest roughness
 
 
 def conty_kulla_value(logarithm: float) -> Tolerance:
-    words = "in the logarithm of a sine, over twice the roughness"
+    words = "in the logarithm of a sine, divided by twice the roughness"
     return sum_of(roundings(32), roundings(logarithm, words))
 
 

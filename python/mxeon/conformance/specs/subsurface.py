@@ -28,7 +28,7 @@ MATERIALS: tuple[Values, ...] = (
 
 # Six circles approximate the integral of the profile with an error of up to 9.3e-3.
 RINGS = tolerance.single(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
-MEAN_OF_CIRCLES = "twice the mean over a sphere of the errors of six circles"
+MEAN_OF_CIRCLES = "twice the mean error of six circles over a sphere"
 RINGS_MEAN = tolerance.single(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)
 
 

@@ -63,8 +63,8 @@ STRETCHED_FIT = 0.019  # largest error of an anisotropic lobe's value due to fit
 # Environment sums for different views have independent errors, so the mean over 64 views has an
 # eighth of the error.
 MEAN = sum_of(
-    Term(2.4e-4, "the mean of the errors by fits, over 32 sets of 64 views"),
-    Term(sum_over(1024).value / 8.0, "sums over 1024 directions, over the root of 64 views"),
+    Term(2.4e-4, "the mean error of the fits, over 32 sets of 64 views"),
+    Term(sum_over(1024).value / 8.0, "sums over 1024 directions, divided by sqrt(64 views)"),
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
@@ -72,7 +72,7 @@ MEAN = sum_of(
 # whose derivative has a magnitude of at most 2.
 GLASS = sum_in(
     Quantity.ALBEDO,
-    Term(2.0 * microfacets.LOBE_FIT, "the fit of a lobe's albedo, which what passes it has twice"),
+    Term(2.0 * microfacets.LOBE_FIT, "twice the fit of a lobe's albedo"),
     Term(2.0 * sum_over(1024).value, "two sums over 1024 directions"),
 )
 COUNTS = Counts(256, albedos=64, materials=1 << 11)  # one material per pair

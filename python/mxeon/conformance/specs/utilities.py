@@ -47,7 +47,7 @@ INPUTS = {
 # The aspect ratio is the square root of 1 - x with x <= 0.98, so a rounding of x grows by up to 1 /
 # (2 (1 - 0.98)). Errors are absolute, because the smallest alpha is 1e-8.
 ALPHA = sum_in(
-    Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half of one of 0.98, over 0.04)")
+    Quantity.ALPHA, roundings(12), roundings(0.25 / 0.02, "(half a rounding, divided by 0.04)")
 )
 BLACKBODY = sum_of(
     Term(1.9e-4, "the fits of X and Z: 1.2e-4 in red, 7e-5 in a clipped luminance"),
@@ -61,9 +61,9 @@ VALUES: Mapping[str, Tolerance] = {
     **dict.fromkeys(INVERSIONS, REFLECTANCE),
     **dict.fromkeys(("roughness_anisotropy", "glossiness_anisotropy"), ALPHA),
     "roughness_dual": sum_in(Quantity.ALPHA, roundings(2)),
-    "artistic_ior, ior": sum_in(Quantity.INDEX, roundings(16, "four over 1 - sqrt(r), six beside, six in the mix")),
+    "artistic_ior, ior": sum_in(Quantity.INDEX, roundings(16, "(four divided by 1 - sqrt(r), six in the other term, six in the mix)")),
     "artistic_ior, extinction": sum_in(
-        Quantity.EXTINCTION, roundings(8 + 16 + 4, "8 of the terms of k^2, 16 of n, 4 of 1 - r and the root")),
+        Quantity.EXTINCTION, roundings(8 + 16 + 4, "(8 in the terms of k^2, 16 in n, 4 in 1 - r and the root)")),
     "blackbody": BLACKBODY,
     "chiang_hair_roughness": sum_of(roundings(24), quantity=Quantity.OUTPUT),
     "deon_hair_absorption_from_melanin": sum_of(roundings(16), quantity=Quantity.OUTPUT),
@@ -71,7 +71,7 @@ VALUES: Mapping[str, Tolerance] = {
 }
 OSL_BLACKBODY = single(
     4e-3, Quantity.OUTPUT,
-    "OSL's blackbody() has an observer from 380 nm to 780 nm, its own table and primaries", tolerance.scaled)
+    "OSL's blackbody() has its own observer (380 nm to 780 nm), table and primaries", tolerance.scaled)
 OTHERS: Mapping[str, dict[str, Tolerance]] = {"blackbody": {"osl_value": OSL_BLACKBODY}}
 # fmt: on
 FEWER = 1 << 12  # number of arguments at which an engine's functions are measured
