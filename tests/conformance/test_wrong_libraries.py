@@ -285,6 +285,15 @@ def test_what_differs_from_the_release_is_named_with_its_size(judged, tmp_path, 
     assert all(each.values[0] > 0.005 for each in result.diagnosis.causes if each.names[0])
 
 
+def test_a_graph_of_two_versions_of_a_node_is_reported_once(judged, tmp_path):
+    old = '<input name="mix" type="float" interfacename="metalness" />'
+    new = '<input name="mix" type="float" interfacename="coat" />'
+    library = wrong_stock(tmp_path, f"{BXDF}/standard_surface.mtlx", (old, new))
+    result = judged("release", EVERY_NODE, library=library)
+    assert [each.names[0] for each in result.diagnosis.causes] == ["standard_surface"]
+    assert "1 more with this text" in said(result)
+
+
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
     """If the cache no longer holds the release, a run loads the release again."""
     file, old, new, *wanted = CHANGED["alpha"]

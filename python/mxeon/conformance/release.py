@@ -224,8 +224,8 @@ class Comparison:
     def nodes(self) -> list[Cause]:
         """Causes for nodes whose values differ from the values of the release.
 
-        If several nodes differ by the same change of text, only the first node with different
-        values is reported.
+        If several nodes differ by the same change of text or share a graph, only the first node
+        with different values is reported.
         """
         names = (definition.getName() for definition in self._release.getNodeDefs())
         groups = grouped(names, self._change)
@@ -264,7 +264,8 @@ class Comparison:
             return None
         graphs = [bool(each) and each.isA(mx.NodeGraph) for each in (code, released_code)]
         if all(graphs):
-            return None if code == released_code else name
+            names = code.getName(), released_code.getName()  # versions of a node may share a graph
+            return None if code == released_code else names
         if (released.getNodeString(), released.getType() not in CLOSURES) in MODELLED:
             return None
         if code is None or any(graphs):
