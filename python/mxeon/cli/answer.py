@@ -368,7 +368,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
 
 
 def model_of(title: str) -> str:
-    """Abbreviation, or else title, of the model that a node must have; `title` names the node."""
+    """The model that the node `title` must have, abbreviated if possible."""
     spec = next(row for row in ALL if row.title == title)
     models = spec.value_candidates if isinstance(spec, ValueSpec) else ()
     name = models[0].title if models else "as specified"
@@ -440,9 +440,8 @@ def _remedy(run: Run) -> Iterator[str]:
 def _failures(run: Run) -> Iterator[Line]:
     """A line for each page or diagnosis that explains failures.
 
-    Failures with compared libraries come last. The next criteria, in this order, put first the
-    failures at the documents' own inputs, the failures without a page, and the failures in the
-    light in which pictures are wrong.
+    Four questions sort the failures, and "no" comes first: is the library only compared, are the
+    inputs used by no document, does a page exist, is the light another than in wrong pictures?
     """
     failures = [each for each in run.results if each.verdict == FAILED]
     white = any(each.difference and each.difference.scene == "furnace" for each in failures)

@@ -85,7 +85,7 @@ def reference_of(shader: Shader) -> ReferenceTable | None:
 
 
 def _rows(node: mx.Node) -> tuple[PbrSpec, ...]:
-    """Specs of nodes with a thin film if the node has a thin film, otherwise all other specs."""
+    """The specs that may describe a node, which depend on whether the node has a thin film."""
     film = node.getInput(FILM)
     return FILM_SPECS if film is not None and film.getValue() != 0.0 else (*PLAIN_LOBES, HAIR)
 

@@ -138,7 +138,7 @@ def replacing(path: AnyPath) -> Iterator[Path]:
 
 @contextmanager
 def naming(path: AnyPath) -> Iterator[None]:
-    """Replace the file name, such as a temporary name, in the block's system errors by `path`."""
+    """System errors of the block name `path` instead of, for example, a temporary file."""
     try:
         yield
     except OSError as error:

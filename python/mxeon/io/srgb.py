@@ -44,8 +44,8 @@ def srgb_encoded(image: ArrayLike) -> Codes:
     finite = reduce(np.logical_and, np.moveaxis(np.isfinite(image), -1, 0))
     linear = np.clip(image, np.float32(0.0), np.float32(1.0))
     linear[~finite] = 0.0
-    # A value has the least code of a step, or 1 more if the value reaches the end of that code.
-    # The mode "clip" avoids checks of bounds.
+    # A step of the table contains values of one or two codes, which the threshold separates. The
+    # mode "clip" avoids checks of bounds.
     thresholds, least = _codes()
     codes: Codes = least.take((linear * np.float32(STEPS)).astype(np.intp), mode="clip")
     codes += linear >= thresholds.take(codes, mode="clip")

@@ -55,7 +55,7 @@ def ratio(pictures: Sequence[Tiles], share: float = 1.0) -> float:
     """The largest mean error of a tile, divided by the largest error that slack and noise explain.
 
     For correct pictures, the ratio exceeds 1 with a probability of at most share (1 - CONFIDENCE).
-    If there are n mean errors, each has 1 / n of this probability (Bonferroni's correction).
+    Each of n mean errors gets 1 / n of this probability (Bonferroni's correction).
     """
     stdtrit = student_quantile()
     total = sum(each.mean.size for each in pictures)

@@ -40,8 +40,8 @@ Images: TypeAlias = Mapping[str, NDArray[np.float64]]  # usable pictures by name
 
 
 # --- faults of a picture --------------------------------------------------------------------------
-# A wrong encoding, orientation or scale can be found independently of the model in the picture of
-# Lambert under a distant light, where all models have equal values.
+# All models have equal values for the Lambert material under a distant light. The picture of this
+# material reveals a wrong encoding, orientation or scale, whatever the model.
 
 MISFIT = 0.02  # largest relative rms error, without noise, of a picture that a fault explains
 SAME_SCALE = 0.005  # a factor closer to 1 is due to noise or a mesh
@@ -91,7 +91,7 @@ def fault(
 def _fit(
     values: NDArray[np.float64], model: Expected, mask: NDArray[np.bool_]
 ) -> tuple[float, float]:
-    """Factor that makes the model fit best, and relative rms error minus noise (or infinity)."""
+    """Best scale factor of the model, and the relative rms misfit without noise (or infinity)."""
     if not np.isfinite(values).all() or (values * model.value).sum() <= 0.0:
         return 0.0, np.inf
     factor = (values * model.value).sum() / (model.value**2).sum()
@@ -119,7 +119,7 @@ def candidates(views: Sequence[View], images: Images, depth: float) -> list[Mode
     rows = reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS + reference.PARAMETRIZATIONS
     rows = tuple(row for row in rows if row.name not in TOO_NEAR)
     if all(view.scene.light for view in views):
-        # Models that differ only in the albedo are equal here. The last model is kept.
+        # Models that differ only in the albedo are equal in direct light. The last model is kept.
         rows = tuple({row.brdf_of: row for row in rows}.values())
     ranking = []
     for row in rows:
@@ -207,7 +207,7 @@ def questions(claim: str = "") -> tuple[Question, ...]:
     if not claim:
         return QUESTIONS
     assert_known("claims", claim, CLAIMS)
-    # The materials `rough` have the roughness of the model.
+    # The claimed model is judged on materials whose roughness has the same meaning.
     rough = (FALSE,) if claim == "qon" else (TRUE, HALF)
     variant = "roughness is dropped", control("lambert"), claim
     if claim == "lambert":
@@ -288,7 +288,7 @@ def _tiles(
     models: Sequence[Expected],
     wrong: Sequence[NDArray[np.float64]] | None = None,
 ) -> list[Tiles]:
-    """Tiles of the errors of pictures, to which the errors of the `wrong` values are added."""
+    """Errors of pictures in tiles, plus the errors of the `wrong` values, if given."""
     wrong = wrong or [model.value for model in models]
     found = []
     for view, model, other in zip(views, models, wrong, strict=True):

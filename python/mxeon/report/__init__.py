@@ -134,7 +134,7 @@ def image_names(pictures: Sequence[Picture]) -> tuple[str, ...]:
         words = (document, picture.element, picture.host, picture.library, picture.scene)
         name = "-".join(NOT_PLAIN.sub("_", word)[:40] for word in words)
         uses[name.lower()] += 1
-        # Names without a number have five words, so no such name equals a numbered name.
+        # Names have five words, and numbered names six, so no two names are equal.
         names.append(name if uses[name.lower()] == 1 else f"{name}-{uses[name.lower()]}")
     return tuple(names)
 
@@ -219,7 +219,7 @@ def html(run: Run) -> Generator[str, None, None]:
 
 
 def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
-    """The given pictures, followed by those of their references that are not among the pictures."""
+    """The given pictures, followed by references that are missing among the pictures."""
     known = {_subject(each) for each in pictures if each.host == REFERENCE}
     added = []
     for picture in pictures:

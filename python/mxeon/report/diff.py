@@ -335,7 +335,7 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
     if NOT_RUN in (old.verdict, new.verdict):
         if old.verdict == new.verdict:
             return "", "", ()
-        # If another failure prevents this check, the result of that failure is compared separately.
+        # If another failure prevents a check, only the result of the other failure is compared.
         if old.follows or new.follows:
             return OTHER, old.reason or new.reason, ()
         if new.verdict == NOT_RUN:
@@ -398,7 +398,7 @@ def _growths(old: Result, new: Result) -> tuple[Growth, ...]:
 
 
 def _is_rounding(old: Result, new: Result) -> bool:
-    """Whether a new driver explains a failure: some errors exceed the tolerance, but not their rms.
+    """Whether rounding of a new driver explains a failure: the rms error is within the tolerance.
 
     With MaterialX's sheen, the errors of 5 of 6957 samples exceed 2e-5 on llvmpipe, by up to
     1.2e-4. On lavapipe, no error exceeds 2e-5.

@@ -58,7 +58,7 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def nearest(distances: Mapping[str, float], count: int = 5) -> list[tuple[str, float, float]]:
-    """Title, distance, and share of the largest listed distance, for the nearest models."""
+    """The nearest models as (title, distance, distance / largest distance in the list)."""
     rows = sorted(distances.items(), key=lambda pair: pair[1])[:count]
     largest = max((distance for _, distance in rows), default=0.0) or 1.0
     return [(title, distance, distance / largest) for title, distance in rows]

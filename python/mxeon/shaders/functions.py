@@ -17,7 +17,7 @@ Parts = dict[str, list[str]]  # tokens of each function or constant, keyed by na
 FAMILY = "oren_nayar_family"
 ALL = "eon_sampling"  # file that includes all other files of shader functions
 STEMS = ("eon", FAMILY, "ltc_sampling", ALL)
-# With included files, these files contain all functions that exist in both GLSL and OSL.
+# Files that, with their includes, contain all functions that exist in both GLSL and OSL.
 TWINS = (ALL, "ggx_albedo", "conty_kulla_albedo")
 INCLUDE = re.compile(r'^#include "((?:\.\./)?(?:lib/|sampling/)?\w+\.\w+)"$', re.MULTILINE)
 SIGNATURE = re.compile(r"^(?:float|vec3|color|vector)\s+(\w+)\s*\(([^)]*)\)\s*(?={)", re.MULTILINE)
@@ -36,7 +36,7 @@ def has_functions(library: str, language: str = "glsl") -> bool:
 
 
 def twins(language: str, library: str) -> str:
-    """Text, in one language, of the files that exist in both languages, with expanded includes."""
+    """Text of the files TWINS in one language, with expanded includes."""
     stems = [
         stem
         for stem in TWINS

@@ -57,8 +57,7 @@ CYCLES_APPROXIMATION = (
     "with s < 0 are darker than the model"
 )
 
-# Matches calls of the closure in the Cycles profile. The last two arguments of the closure are the
-# flag and the result.
+# Matches a call whose last two arguments are `energy_compensation` and the result.
 CYCLES_CALL = re.compile(r"\boren_nayar_diffuse_bsdf_cycles\([^;{]*?(\w+), *\w+\);")
 
 # Matches calls of MaterialX's functions.
@@ -306,7 +305,7 @@ def check_generator(library: str, target: str) -> None:
 
 
 def _inputs(shader: mx_gen.Shader, document: mx.Document) -> tuple[Input, ...]:
-    """Inputs of a shader. If the generator added an input's node, the input's name is the path."""
+    """Inputs of a shader. An input that the document lacks has the variable's name as its path."""
     stage = shader.getStage("pixel")
     blocks = stage.getUniformBlocks() | stage.getInputBlocks()  # MDL declares uniforms as inputs
     return tuple(

@@ -134,7 +134,7 @@ def generated(
 
 @cache
 def tokens_of(target: str, library: str, profile: str | None) -> Mapping[str, str]:
-    """Replacements of tokens in includes, which a generator only has after generating a shader."""
+    """Values of the tokens in includes, read from a generator that has generated a shader."""
     document = mx.createDocument()
     document.setDataLibrary(load_library(library, profile))
     generator = generator_of(document, target, library, profile)

@@ -77,9 +77,8 @@ def _tree(folder: str) -> Tree:
             path: file for path, file in installed.items() if path.partition("/")[0] not in tops
         }
     else:
-        # Reject a source that has the name of a MaterialX source but lies elsewhere, because
-        # MaterialX would not use the source. MaterialX's path after a folder `libraries` is
-        # permitted, because a search path can lead to the source.
+        # MaterialX would ignore a source that has the name of a MaterialX source but another
+        # relative path. A search path may lead to a folder `libraries`, which may precede the path.
         known = {PurePosixPath(each).name: each for each in installed if each.endswith(CODE)}
         for each in recognized:
             other = known.get(PurePosixPath(each).name)

@@ -14,8 +14,8 @@ from mxeon.shaders.library import source_folder
 
 TARGETS = ("glsl", "essl", "vulkan", "slang")
 
-# Values that a vertex stage would compute, from members of the path tracer's structure Point.
-# Object space is the same as world space.
+# Expressions that replace outputs of a vertex stage. The path tracer's structure Point is `p`, and
+# object space is the same as world space.
 PLACES = {
     "position": "p.position",
     "normal": "p.normal",

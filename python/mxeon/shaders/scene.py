@@ -63,7 +63,7 @@ TURN: Matrix = tuple(np.diag([-1.0, 1.0, -1.0, 1.0]).ravel().tolist())
 
 @dataclass(frozen=True, eq=False)
 class Client:
-    """Values, except the scene, that an application binds. MaterialX has the same defaults."""
+    """Values that an application binds, without the scene. MaterialX has the same defaults."""
 
     lamps: tuple[Lamp, ...] = ()
     turn: Matrix = TURN  # maps the world to the environment map's frame

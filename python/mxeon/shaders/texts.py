@@ -155,8 +155,7 @@ def clashes(
     for each in document.getNodeDefs():
         if source := source_of(each.getImplementation(target)):
             nodes.setdefault(source[1], each.getName())
-    # For each definition, the files that contain the definition. Each file has a node that uses the
-    # file, and a mark if another file includes the file.
+    # For each definition, maps (file, whether another file includes the file) to a node.
     owners: dict[Definition, dict[tuple[Path, bool], str]] = defaultdict(dict)
     for path, node in nodes.items():
         for file in files(path, search.asString()):

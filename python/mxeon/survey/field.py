@@ -31,8 +31,8 @@ from mxeon.survey import ROWS, nodes
 Place: TypeAlias = tuple[str, str, str]  # host, library and node
 
 BACK = "back"
-# Checks by column of the page. The first check that a node has counts. The column BACK has no
-# checks, because portraits are judged instead.
+# Checks for each column of the page. If a node has several of the checks, the first check counts.
+# The column BACK has no checks, because portraits are judged instead.
 CHECKS = {
     "direct": DIRECT,
     "surroundings": ("environment",),

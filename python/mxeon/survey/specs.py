@@ -68,7 +68,7 @@ def node(
 
 
 def _row(model: str, node: str) -> PbrNode:
-    """The row of a renderer's node, with only one of the two Burley models as a variant."""
+    """The row of a renderer's node. Only one of the two Burley models is among the variants."""
     name = model if model.startswith("burley") else "burley"
     left_out = {"burley", "burley_lambert"} - {name}
     variants = tuple(each for each in OTHERS if each.name not in left_out)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sliders that lay the reference, or stock's picture, over another, and links into folded parts. The page is complete without them.
+// Sliders compare two pictures, and links unfold parts. The page is complete without JavaScript.
 "use strict";
 
 document.documentElement.classList.add("scripted");

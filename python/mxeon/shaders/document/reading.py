@@ -313,7 +313,7 @@ def _check_version(document: mx.Document, title: str) -> None:
 
 
 def _input_faults(node: mx.Node) -> Iterator[tuple[mx.Input, str]]:
-    """A node's inputs that are unknown, mistyped or connected to a missing node, and the faults."""
+    """Each invalid input of a node, with the rule that the input breaks."""
     if not (definition := node.getNodeDef("", True)):  # the definition may have other inputs
         return
     ports = {each.getName(): each.getType() for each in definition.getActiveInputs()}
@@ -348,7 +348,7 @@ def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]
 
 
 def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:
-    """Faults for missing files that inputs of nodes name and that the policy permits to read."""
+    """A fault for each input that names a missing file which the policy permits to read."""
     for each in (port for node in nodes for port in node.getInputs()):
         port = each.getInterfaceInput() if each.hasInterfaceName() else each
         if port and port.getType() == "filename" and (name := port.getValueString()):

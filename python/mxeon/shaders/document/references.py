@@ -172,7 +172,7 @@ def _text(path: str, policy: Policy) -> str:
 
 
 def _names(text: str) -> Iterator[tuple[str, str]]:
-    """Keys and values of attributes that may name files, also with every `fileprefix`."""
+    """Keys and values of attributes that may name files, without and with each `fileprefix`."""
     found = dict.fromkeys(
         (key, html.unescape(value[1:-1])) for key, value in ATTRIBUTE.findall(text) if key in NAMING
     )
@@ -211,9 +211,8 @@ def files_read(
 ) -> dict[str, str]:
     """Paths of all files that a run on documents may read.
 
-    For documents, for the files that documents may include or name, and for files of library
-    folders, the key is the path of the file. For installed files, the key begins with "mxeon",
-    "eonlib" or "MaterialX".
+    The keys of installed files begin with "mxeon", "eonlib" or "MaterialX". Documents, files that
+    documents may include or name, and files of library folders have their paths as keys.
     """
     paths = {path: path for document in documents for path in named_files(str(document), policy)}
     trusted = {*map(os.path.abspath, {*libraries, *policy.definitions} - {*LIBRARIES})}

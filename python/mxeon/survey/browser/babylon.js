@@ -28,14 +28,13 @@ import "@babylonjs/core/Engines/WebGPU/Extensions/engine.readTexture.js";
 import "@babylonjs/core/Materials/Textures/baseTexture.polynomial.js";
 import { encode, sphere } from "/sphere.js";
 
-// Distance of the camera: Babylon.js computes directions of view from the camera's position, even
-// of an orthographic camera.
+// Distance of the camera. Babylon.js computes view directions from the position of the camera, even
+// for an orthographic projection.
 const FAR = 1e7;
 
 const stages = {};
 
-// A canvas whose WebGPU context is a plain texture: Chromium's software adapter cannot show a
-// canvas.
+// A canvas whose WebGPU context is a texture, because Chromium's software adapter shows no canvas.
 function hiddenCanvas() {
     const canvas = document.createElement("canvas");
     let texture;
@@ -93,7 +92,7 @@ function pbrMaterial(scene, { color, roughness, model }) {
     const material = new PBRMaterial("material", scene);
     material.albedoColor = new Color3(...color);
     material.metallic = 0;
-    material.roughness = model === "LEGACY" ? roughness : 1; // LEGACY has no other roughness
+    material.roughness = model === "LEGACY" ? roughness : 1; // LEGACY ignores baseDiffuseRoughness
     material.metallicF0Factor = 0; // no specular lobe
     material.baseDiffuseRoughness = roughness;
     material.brdf.baseDiffuseModel = Constants[`MATERIAL_DIFFUSE_MODEL_${model}`];

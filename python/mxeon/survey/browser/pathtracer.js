@@ -7,7 +7,7 @@ import { encode } from "/sphere.js";
 // The members of the package's struct that the called functions read.
 const SURFACE = "struct SurfaceRecord { color: vec3f, diffuseRoughness: f32 }";
 
-// Columns of a row: wo, wi or two random numbers and 0, color, roughness.
+// Number of columns: wo (3), wi or random numbers (3), color (3), roughness (1).
 const COLUMNS = 10;
 const BRDF = (name) => `
     var surface: SurfaceRecord;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visible points of the unit sphere as quads, one for each pixel, and pixels as text.
+// One quad per pixel for the visible points of the unit sphere, and an encoder of pixels as text.
 //
-// A quad lies in the plane of the picture, and its four corners have the sphere's normal under the
-// pixel's center. So every pixel has an exact normal, whatever the rasterizer interpolates.
+// The quads lie in the plane of the picture. The four corners of a quad have the sphere's normal at
+// the pixel's center, so interpolation does not change the normal.
 
 export function sphere(size) {
     const positions = [], normals = [], tangents = [], indices = [];
@@ -30,7 +30,7 @@ export function sphere(size) {
     };
 }
 
-// RGBA pixels whose first row is the lowest, as base64 of float32 with the first row on top.
+// Encodes RGBA pixels as base64 of float32, top row first. `bottomUp` is the order of `pixels`.
 export function encode(pixels, size, bottomUp) {
     const width = 4 * size;
     const rows = new Float32Array(width * size);

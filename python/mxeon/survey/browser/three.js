@@ -25,7 +25,7 @@ async function start(backend) {
     return (renderers[backend] = { renderer, device: `${vendor} ${architecture}`, three: GPU });
 }
 
-const geometries = new Map(); // by library and size
+const geometries = new Map(); // keys: library and size
 
 function geometryOf(three, size) {
     const key = `${three === GL} ${size}`;
@@ -62,7 +62,7 @@ function loadedMaterial({ document: text, element }) {
     return { material, ignored };
 }
 
-const maps = new Map(); // by library, because filtering a map takes seconds on a software driver
+const maps = new Map(); // cached by library, since filtering takes seconds on a software driver
 
 // An environment map of radiance 1.
 function surroundings(three) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sorts and filters the rows. The page is complete without it.
+// Sorts and filters the rows. The page is complete without JavaScript.
 "use strict";
 
 document.documentElement.classList.add("scripted");
