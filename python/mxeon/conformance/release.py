@@ -100,7 +100,7 @@ def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
 def definition_facts(
     definition: mx.NodeDef, reference: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """Compared attributes of a definition, and of the ports that `reference` has."""
+    """Attributes to compare, of a definition and of each port that `reference` has."""
     name = reference.getName()
     facts = {
         f"category of {name}": definition.getNodeString(),
@@ -169,7 +169,7 @@ class Terms:
 
 
 def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple[Place, Place]]:
-    """Pairs of ports at which two graphs differ. A common lobe is replaced by the lobe's inputs."""
+    """Pairs of ports at which two graphs differ. Lobes of the same node are compared by inputs."""
     if terms.port(own) == terms.port(released):
         return
     nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, released)]

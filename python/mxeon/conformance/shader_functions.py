@@ -93,7 +93,7 @@ def exact(function: str) -> tuple[Array, Array]:
         # Skip divisors, because quotients have relative errors and huge slopes near a divisor of 0.
         if name == "divisor" or (columns[name].ndim > 1 and name != "wo"):
             continue
-        # Step toward the middle of an argument's range. A direction changes in the cosine only.
+        # Move the argument toward the middle of its range. Change only the cosine of a direction.
         steps = np.where(columns[name] > 0.5, -STEP, STEP)
         if name == "wo":
             steps[:, :2] = 0.0
@@ -125,7 +125,7 @@ NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_pdf": lambda wo, wi, rho, roughness: sampling.eon_pdf(wo, wi, roughness, rho=rho),
     "eon_rotate_z": sampling.rotate_z,
     "eon_sample": lambda wo, u, rho, roughness: sampling.eon_sample(wo, u, roughness, rho=rho),
-    # The shader function is a fit. NumPy evaluates the integral for the angle with cosine 1 - m.
+    # The shader function is a fit. NumPy evaluates the exact integral for the cosine 1 - m.
     "eon_upper_root": lambda m: sampling.eon_upper_limit(1.0 - m, np.sqrt(m * (2.0 - m))),
     "oren_nayar_s": lambda wo, wi: diffuse.cosines(wo, wi)[2],
 }
@@ -218,7 +218,7 @@ class FunctionProbe:
         return row.error.plus(self.turn) if row.turns else row.error
 
     def _values(self, scale: float) -> Mapping[str, Array]:
-        """Values of the functions that a library shares with eonlib, with a scaled last argument.
+        """Values of all functions that a library shares with eonlib, for a scaled last argument.
 
         A single call of the host evaluates all functions.
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A spec describes a node for the checks, with ranges of inputs, models, errors and samples.
+"""A spec describes how to check a node, by input ranges, models, errors and samples.
 
 Each file in the folder `specs` describes a family of nodes. Backends define how an engine
 evaluates a spec.
@@ -46,7 +46,7 @@ class Input:
     equal: bool = False  # whether the two components are equal in half of the samples
     # Values of the input in two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
-    variable: str = ""  # shader variable that has the default and that hosts set
+    variable: str = ""  # shader variable that hosts set, if the input's default reads the variable
     default: ArrayLike = 1.0  # value in documents that must set the input
     beyond: tuple[float, ...] = ()  # values outside of [low, high] that checks also use
     ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps the input
@@ -114,7 +114,7 @@ class Ability(Flag):
     EMISSION = auto()
     SURFACE = auto()  # emitting surfaces
     MEDIUM = auto()
-    IMPLEMENTATION = auto()  # nodes without values, which only need an implementation
+    IMPLEMENTATION = auto()  # nodes that are only checked for an implementation
     OUTPUT = auto()  # nodes whose outputs are numbers or colors
     # Abilities that checks require.
     CLIENT = auto()  # run the shader's complete main() function with a client's bindings
@@ -126,7 +126,7 @@ NO_ABILITY = Ability(0)
 
 
 class EngineError(NamedTuple):
-    """An error of an engine's built-in function. The error is measured on each engine."""
+    """An error of an engine's built-in function, measured on each engine."""
 
     words: str  # description of the error
     measure: Callable[[base.Host], float]
@@ -224,7 +224,7 @@ class ValueSpec(Spec):
 
     @property
     def all_candidates(self) -> tuple[Candidate, ...]:
-        """`value_candidates` and functions that may only explain samples outside of `batches`."""
+        """The `value_candidates`, and functions that only explain samples outside of `batches`."""
         return self.value_candidates
 
     @abstractmethod
@@ -244,7 +244,7 @@ class LobeSpec(ValueSpec):
     """A node that scatters light."""
 
     curved: ClassVar[bool] = False  # whether values depend on the surface's curvature
-    # States that the check `states` skips, and kinds of states with only the first state checked.
+    # States that the check `states` skips, and kinds of states of which only the first is checked.
     plain: ClassVar[tuple[str, ...]] = ()
 
     @property
@@ -368,7 +368,7 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def value_candidates(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the values: the row's function, its variants, and `others`."""
+        """Functions that may explain the values: the model, variants of the model, and `others`."""
         variants = (
             Candidate(each.title, partial(self.values, each.value), each.permitted)
             for each in self.row.variants

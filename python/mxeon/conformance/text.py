@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Check texts that no host runs: shader functions, sources of nodes, and generated shaders.
 
-Each check counts faults, and no fault is allowed. The control of a check is a text with an
-additional fault. The meaning of closure arguments comes from the documentation of renderers.
+Each check counts faults, and no fault is allowed. The negative control of a check is a text with an
+additional fault. The documentation of renderers defines the meaning of closure arguments.
 """
 
 import re
@@ -31,9 +31,9 @@ from mxeon.shaders.library import load_library
 
 # --- checks --------------------------------------------------------------------------------------
 
-Faults: TypeAlias = tuple[list[Cause], int]  # faults, and number of faults in the control
+Faults: TypeAlias = tuple[list[Cause], int]  # faults, and number of faults in the negative control
 Inputs = Mapping[str, expressions.Array]
-# Each row has the claim of a check, the counted quantity, and the mistake in the control.
+# Each row has the claim of a check, the counted quantity, and the mistake in the negative control.
 # fmt: off
 CLAIMS = {
     "languages": ("The shader functions are identical in OSL and GLSL, apart from type names.",
@@ -92,7 +92,7 @@ def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]
 
 
 def _twins(library: str) -> Faults:
-    """Functions whose texts differ between GLSL and OSL. The control changes a number."""
+    """Functions whose texts differ between GLSL and OSL. The negative control changes a number."""
     glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
     expected, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
     differing, control = (
@@ -120,7 +120,7 @@ def _clashes(library: str) -> Faults:
 
 
 def _arguments(library: str, release: mx.Document) -> Faults:
-    """Arguments of MDL calls that differ from the release. The control exchanges two arguments."""
+    """MDL arguments that differ from the release. The negative control exchanges two arguments."""
 
     def faults(exchange: bool) -> Iterator[Cause]:
         for definition in release.getNodeDefs():
@@ -196,7 +196,7 @@ def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) ->
 # --- closures: arguments of MDL's closures for random materials -----------------------------------
 
 DRAWS = 256  # number of random materials
-ROUNDED = 1e-12  # 4500 float64 roundings, which is more than any text performs
+ROUNDED = 1e-12  # 4500 float64 roundings, which is more than any shader performs
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface, which differs from the node's normal
@@ -234,7 +234,7 @@ FUNCTIONS: Mapping[str, object] = {
 
 
 def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
-    """Closure arguments that differ from the node's inputs. The control drops the weight."""
+    """Closure arguments that differ from the inputs. The negative control drops the weight."""
     expression = _lobe_expression(subject, "mdl", library)
     rng = generator()
     drawn = subject.random_inputs(rng, DRAWS)

@@ -170,7 +170,7 @@ FAULTS = {
     "pi_missing": "the factor 1/pi is missing",
     "pi_twice": "the factor 1/pi is applied twice",
 }
-# Words that join the names of states of lobes and lights. All wrong values share these states.
+# Words that join the names of states of lobes and lights that all wrong values share.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 SUMS = "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
 # Other defects, and facts about defects. `_filled` replaces the braces by names and numbers.
@@ -311,7 +311,7 @@ def diagnosis(found: Diagnosis) -> str:
 
 def _cause(cause: Cause, distances: Mapping[str, float]) -> str:
     text = _model(cause, distances) if cause.kind is Kind.MODEL else SENTENCES[cause.kind](cause)
-    named = cause.branch and cause.key != "passes_other_light"  # the sentence names the branch
+    named = cause.branch and cause.key != "passes_other_light"
     return f"branch {cause.branch}: {text}" if named else text
 
 
@@ -433,7 +433,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.UNKNOWN: lambda cause: DEFECTS[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
-    # The reason of a result already states these causes, so the sentence is empty.
+    # For these causes, the reason of the result already says everything.
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 
@@ -475,7 +475,7 @@ def appearance(found: Difference) -> str:
 
 
 def excess(result: Result) -> str:
-    """The error, if above the tolerance, or the fact that a control passed, in words; else ""."""
+    """Words for an error above the tolerance or for a control that passed, otherwise ""."""
     control = result.control
     if result.error is not None and not result.within:
         if result.difference:
@@ -627,7 +627,7 @@ def summary(run: Run) -> str:
 
 
 def origins(run: Run) -> tuple[str, ...]:
-    """For each folder judged as a library, the numbers of the folder's and of MaterialX's files."""
+    """The numbers of files from each folder judged as a library, and from MaterialX."""
     return tuple(
         f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
         + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
@@ -637,7 +637,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """A line with the subjects that no check judges, and with reasons; () without such subjects."""
+    """A line with all subjects that no check judges and the reasons, or () if there are none."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)

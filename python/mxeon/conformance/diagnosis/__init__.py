@@ -49,18 +49,18 @@ UNEXPLAINED = Diagnosis((UNKNOWN,))
 WORST = 32  # number of the worst pairs for which cures are tried
 CURES = 2  # maximum number of reported cures
 DIMMING = ("weight", "occlusion")  # inputs that can hide any error
-REMAINING = 0.1  # smallest share of the light that a cure may leave
+REMAINING = 0.1  # smallest share of the light that must remain after a cure
 # An explanation is complete if the distance between explained and measured values is below SAME
-# times the distance of every other explanation. The factor for a near explanation is NEAR.
+# times the distance of every other explanation. For a near explanation, the factor is NEAR.
 SAME, NEAR = 0.03, 0.3
 FAR = 0.2  # largest distance of a near model, relative to the distance of the expected model
-NAMED = 0.5  # largest distance of a named model, relative to the distance of black values
+NAMED = 0.5  # largest distance of a model to report, relative to the distance of black values
 INEXACT = 30.0  # errors up to this many tolerances count as inaccuracy of the expected model
-LEAST_LIGHT = 1e-3  # cosine of the light up to which faults of the cosine look alike
+LEAST_LIGHT = 1e-3  # cosine of the light below which faults of the cosine look alike
 
 
 def defect(key: str, *names: str) -> Diagnosis:
-    """A diagnosis of the defect with this key in `mxeon.conformance.words.DEFECTS`."""
+    """A diagnosis of the defect with a key of `mxeon.conformance.words.DEFECTS`."""
     return Diagnosis((Cause(Kind.DEFECT, key, names),))
 
 
@@ -224,7 +224,7 @@ def _without_fault(
 
 
 def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> Cause:
-    """A cause with the region of all wrong values; if there is no such region, the given cause."""
+    """A cause with the region of all wrong values, or `cause` if there is no such region."""
     if region := region_of(cases, tolerance):
         return correct_except(cases, tolerance, region)
     if cause == SINGLY_RIGHT and tolerance.metric in (absolute, relative, scaled):
@@ -235,7 +235,7 @@ def searched(cause: Cause, cases: Sequence[Compared], tolerance: Tolerance) -> C
 def _cures(
     case: Case, cases: Sequence[Compared], tolerance: Tolerance, measure: Measure
 ) -> dict[str, float]:
-    """Inputs that make the worst pairs correct if changed alone, each with the new value."""
+    """Inputs whose change alone corrects the worst pairs, and the new value of each input."""
     most = max(cases, key=lambda each: np.count_nonzero(tolerance.wrong(each)))
     worst = np.argsort(tolerance.metric(most.measured, most.expected))[-WORST:]
     batch, cures = most.batch, {}
@@ -268,7 +268,7 @@ def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """A quantity: how to compare measured with expected values, and how to explain differences."""
+    """A comparison of measured with expected values, with functions that explain differences."""
 
     quantity: str  # name of the quantity in a spec's tolerances
     compared: Measure
@@ -360,7 +360,7 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """Causes of wrong outputs that must be 0: a constant value, a region, and the branches."""
+    """Explain outputs that are not 0 by constant values, by regions and by branches."""
     branches: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
@@ -414,7 +414,7 @@ def ignored(name: str) -> Callable[[Case], Diagnosis]:
 
 
 def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
-    """A cause if the case has an input of this name and the input has no effect."""
+    """A cause if the case has an input called `name` that has no effect."""
     dead = name in case.changes and name in dead_inputs(case)
     return defect("input_ignored", name).causes if dead else ()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Regions, which describe where a shader is wrong: named sets of pairs, and ranges of inputs."""
+"""Regions describe where a shader is wrong, by named sets of pairs and by ranges of inputs."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, compress
@@ -29,7 +29,7 @@ EXACT = count_of(Quantity.VALUES)
 # A reported range of an input contains all wrong values. The range contains at most the share RIGHT
 # of all correct values, or WEAK if the input is known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
-CLEARER = 0.5  # factor of RIGHT and WEAK for a range that is limited at both ends
+CLEARER = 0.5  # factor for RIGHT and WEAK if a range is limited at both ends
 CHANCE = 12.0  # smallest log odds against finding a range by chance
 LARGEST = 0.6  # largest share of all pairs or values that a reported region may contain
 DENSITY = 0.1  # smallest share of wrong pairs in a region
@@ -46,7 +46,7 @@ def region_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 def correct_except(
     cases: Sequence[Compared], tolerance: Tolerance, region: Region | None = None
 ) -> Cause:
-    """A cause with the number of wrong pairs, and with the region of these pairs if given."""
+    """A cause with the number of wrong pairs and, if given, with the region of all wrong pairs."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     return Cause(Kind.REGION, region=region, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
 
@@ -74,8 +74,8 @@ def smallest(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -> Region | None:
     """The range of an input that contains all wrong values and the fewest correct values.
 
-    The result is None if every range contains too many correct values. Color channels are judged
-    separately, and a channel of the values belongs to the same channel of color inputs.
+    The result is None if every range contains too many correct values. Each color channel of the
+    values is compared with the same channel of color inputs.
 
     - `most`: Largest share of all correct values that the range may contain.
     """
@@ -117,7 +117,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
 
 
 def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
-    """Parts of an input for which a range is sought: keys of `words.PARTS`, each with numbers.
+    """Parts of an input in which to search for a range, by key of `words.PARTS`.
 
     - `wrong`: Mask of the color channels with wrong values.
     """
@@ -227,8 +227,8 @@ HALF = 0.5  # cosine that divides views, and lights, into two regions
 def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Errors, ...], str]:
     """Errors of all samples, errors below and above the median of each input, and a checksum.
 
-    The checksum identifies the samples. The largest component of a color or of a pair of alphas
-    counts.
+    The checksum identifies the samples. Colors and pairs of alphas count with the largest
+    component.
     """
     batches = [each.batch for each in cases]
     rows = np.concatenate([tolerance.metric(*each[1:]) for each in cases])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A host that renders with the NumPy models in float64, the reference for all other hosts."""
+"""A host that renders with the NumPy models in float64, to compare other hosts with."""
 
 from __future__ import annotations
 
@@ -113,9 +113,9 @@ class Reference(base.Host):
     ) -> ExpectedPicture:
         """The picture that is expected from the judged host.
 
-        The function `values` draws, on that host, inputs of lobes that the reference cannot
-        compute. Only every `stride`-th row and column is computed. If there are `values`, but too
-        many different materials, the stride grows. Raise NotRun as `picture` does.
+        If the reference cannot compute an input of a lobe, `values` draws the input on the judged
+        host. Only every `stride`-th row and column is computed. With `values`, the stride grows if
+        there are too many different materials. Raise NotRun as `picture` does.
         """
         mask = sphere(scene.size).mask
         chosen = mask & _lattice(scene.size, stride)

@@ -36,7 +36,7 @@ from mxeon.shaders.inner_lobes import Nodes, Path
 
 # Types that a generated shader can draw as a color, and the number of components of each type.
 DRAWN = {"float": 1, "integer": 1, "vector2": 2, "color3": 3, "vector3": 3}
-# A function that draws an output on a host; arguments are nested elements, a type and a name.
+# A function that draws an output on a host. Arguments are nested elements, a type and a name.
 Measure: TypeAlias = Callable[[drawn_values.Elements, str, str], Array]
 Step: TypeAlias = tuple[Callable[..., Value], tuple[Path, ...]]
 
@@ -273,7 +273,7 @@ class Graph(Nodes):
         element = self.elements[path]
         nodedef = element.getNodeDef() if element.isA(mx.Node) else None
         declared = nodedef.getActiveInput(name) if nodedef else port
-        if declared and declared.hasDefaultGeomPropString():  # use the default property
+        if declared and declared.hasDefaultGeomPropString():  # use the default geometric property
             return self._points.geometry(declared.getDefaultGeomPropString())
         value = port.getValue()
         if value is None and declared:  # MaterialX ignores an unresolved connection
@@ -337,7 +337,7 @@ def _radiance(
 
 
 def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str, Array]:
-    """The only output of a utility node, or all its outputs by name."""
+    """The only output of a utility node, or all outputs by name."""
     outputs = row.value(_rows(row.inputs, values))
     return next(iter(outputs.values())) if len(outputs) == 1 else outputs
 

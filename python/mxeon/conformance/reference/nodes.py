@@ -59,7 +59,7 @@ def _directions(mu: Array, phi: Array) -> Array:
 
 
 def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
-    """Sums, (N, 3), of a Chebyshev series in sqrt(mu) from `low` to 1, and in cos(2 phi)."""
+    """Sums of a Chebyshev series in cos(2 phi) and, from `low` to 1, in sqrt(mu), (N, 3)."""
     root = np.sqrt(np.minimum(wo[:, 2], 1.0))
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
@@ -159,7 +159,7 @@ class ShadingPoints:
     most: float = np.inf  # maximum number of different materials with integrated albedos
     round: bool = False  # whether the points lie on the unit sphere
     behind: bool = False  # whether only transmitted light counts
-    opacity: bool = False  # whether lobes in mode T pass all light, times the tint
+    opacity: bool = False  # whether lobes in mode T pass the tint times all light
     searched: bool = False  # whether environment sums use both alphas for masking, as in eonlib
     _lobes: Recent[Bsdf] = field(default_factory=lambda: Recent(CACHED), init=False)
 
@@ -331,7 +331,7 @@ def node_lobe(
     film = FILM if np.any(inputs.get(FILM[0], 0.0)) else ()
     arguments = {port: _argument(node, port, inputs[port], weight) for port in (*row.inputs, *film)}
     if row.name == "qon":
-        # MaterialX rounds pi / 2 to float32, which exceeds the largest roughness of the model.
+        # MaterialX's float32 value of pi / 2 exceeds the largest roughness of the model.
         rounded = np.float32(arguments["roughness"]) == np.float32(np.pi / 2.0)
         arguments["roughness"] = np.where(rounded, np.pi / 2.0, arguments["roughness"])
     tangent = inputs.get("tangent", inputs.get("curve_direction", points.tangent))
@@ -372,7 +372,7 @@ def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
         array = np.reshape(np.asarray(value, np.float64), -1)
     else:
         array = np.atleast_2d(np.asarray(value, np.float64))
-        if port == "roughness":  # OpenPBR's alphas can exceed 1; shaders clamp alphas to 1
+        if port == "roughness":  # shaders clamp OpenPBR's alphas, which can exceed 1, to 1
             array = np.clip(array, 0.0, 1.0)
         array = np.broadcast_to(array, (len(array), WIDTHS[kind]))
     idle = weight[:, 0] == 0.0

@@ -35,7 +35,7 @@ NOT_RUN: Final = "not run"
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 # Exit status of a run for each verdict.
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
-# Used instead of a document's name in pictures of nodes, which belong to no document.
+# Replaces a document's name in pictures of nodes, which belong to no document.
 PORTRAIT = "portrait"
 SOURCE = "source"  # replaces the host in checks of text, which need no host
 SHADER_FUNCTIONS = "shader twins"  # subject of the checks of a library's functions
@@ -79,7 +79,7 @@ class Kind(Enum):
 
     NONE = ""
     MODEL = "model"  # the known model or defect nearest to the values
-    FAULT = "fault"  # a wrong use of the correct model, which reproduces the values
+    FAULT = "fault"  # a wrong use of the correct model that reproduces the values
     ACCURACY = "accuracy"  # insufficient accuracy of the correct model
     REGION = "region"  # the region of pairs and inputs with wrong values
     NOT_FINITE = "not finite"  # the region of pairs and inputs without finite values

@@ -152,8 +152,8 @@ def _rows(table: Table) -> tuple[Row, ...]:
 
 # Hosts that use their own closures with every library.
 OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
-REPAIRED = 30.0  # an issue does not explain an error that is smaller by this factor
-SPREAD = 1.5  # largest ratio of an error to the issue's error, measured on another system
+REPAIRED = 30.0  # errors smaller than the issue's error by this factor are not explained
+SPREAD = 1.5  # largest ratio of an error to the error that another system measured for the issue
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:

@@ -253,7 +253,7 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
 
 
 def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
-    """Targets of a library's texts that none of the given hosts compiles, and the reasons."""
+    """Targets that none of the given hosts compiles, and the reasons."""
     targets = {row.target for row in HOSTS if row.name in hosts}
     for row in HOSTS:
         if row.target and row.target not in targets:
