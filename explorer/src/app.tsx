@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: its view, the actions that change it, and its parts.
+// The page, which has a view, actions that change the view, and parts that show the view.
 
 import { useCallback, useEffect, useLayoutEffect, useMemo, useState } from "preact/hooks";
 import { fromAddress, toAddress } from "./address";
@@ -42,7 +42,7 @@ export function App({ data, publish }: AppProps) {
     (patch: Partial<State>) => setState((old) => consistent({ ...old, ...patch }, sources)),
     [],
   );
-  // undefined until the browser has been tested, null if it cannot draw
+  // undefined until the browser has been tested, null if the browser cannot draw
   const [stage, setStage] = useState<Stage | null | undefined>(undefined);
   const [dragging, setDragging] = useState(false);
   useAddress(state, setState, data);

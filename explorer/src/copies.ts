@@ -37,7 +37,7 @@ function withValues(
   return new XMLSerializer().serializeToString(document);
 }
 
-/** The element of a name path, created if its node lacks it; null if there is no such node. */
+/** The element of a name path, created if missing in the node; null if the node does not exist. */
 function inputOf(document: Document, path: string, type: string): Element | null {
   const names = path.split("/");
   const last = names.pop()!;
@@ -78,7 +78,7 @@ export function pythonLine(of: Model, { wo, wi }: Pair, state: State): string {
   );
 }
 
-/** Copy a text; uses the older method if the page may not use the clipboard. */
+/** Copy a text, with an older method if the page may not use the clipboard. */
 export async function copy(text: string): Promise<boolean> {
   try {
     await navigator.clipboard.writeText(text);

@@ -6,13 +6,13 @@ import type { ModelName } from "./models/table";
 export type Vec3 = readonly [number, number, number];
 export type Triple = [number, number, number];
 
-/** A node's models with energy_compensation true and false; equal if it has no such flag. */
+/** A node's models with energy_compensation true and false; equal for nodes without this flag. */
 interface Models {
   readonly on: ModelName;
   readonly off: ModelName;
 }
 
-/** A material with a single model, drawn with `PageData.functions` or a variant of them. */
+/** A material with a single model, drawn with `PageData.functions` or with a variant. */
 export interface ModelSource {
   readonly kind: "model";
   readonly id: string; // "model/eon"
@@ -55,7 +55,7 @@ export interface ShaderSource {
   readonly pixel: string;
   readonly paths: string; // GLSL for path tracers, or ""
   readonly inputs: readonly Port[];
-  /** Uniforms that the page's own controls set; "" for missing ones. */
+  /** Uniforms that the page's own controls set; "" for missing uniforms. */
   readonly controls: { readonly color: string; readonly roughness: string; readonly flag: string };
   readonly meant: Models | null; // intended models of one rough diffuse node, otherwise null
   readonly actual: Models | null; // the model of this library's code, according to the diagnosis
@@ -101,12 +101,12 @@ export interface PageData {
    */
   readonly functions: string;
   readonly sources: readonly Source[];
-  /** Pairs of directions (wo and wi) and views, in the local frame; all references use them. */
+  /** Pairs of directions (wo and wi) and views of all references, in the local frame. */
   readonly pairs: readonly (readonly [Vec3, Vec3])[];
   readonly views: readonly Vec3[];
   /** URL of the pages about defects, with {} for the name; "" if there is none. */
   readonly pages: string;
-  /** Whether `mxeon explore` serves the page, so that it can show dropped files. */
+  /** Whether `mxeon explore` serves the page, so that dropped files can be shown. */
   readonly served: boolean;
   readonly warnings: readonly string[]; // warnings about the page's documents
   /** The reader's own environment map, in MaterialX's layout: 32-bit floats, top row first. */

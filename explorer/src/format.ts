@@ -24,7 +24,7 @@ export function degrees(radian: number): string {
   return `${Math.round((radian * 180) / Math.PI)}\u00b0`.replace("-", "\u2212");
 }
 
-/** A linear color as a hexadecimal sRGB color, clipped to its gamut. */
+/** A linear color as a hexadecimal sRGB color, clipped to the gamut of sRGB. */
 export function toHex(color: Vec3): string {
   const code = (linear: number): string => {
     const x = Math.min(Math.max(linear, 0), 1);

@@ -13,7 +13,7 @@ const REST = 120; // milliseconds without a change until a view is at rest
 const MEASURE_DELAY = 60;
 const RETRY = 100;
 
-/** The latest view at rest whose picture was drawn; null before the first one. */
+/** The latest view at rest whose picture was drawn; null before the first picture. */
 export function useRest(
   stage: Stage | null | undefined,
   state: State,
@@ -34,8 +34,8 @@ export function useRest(
 }
 
 /**
- * Shader values for a pair, requested after the picture is done; null until they arrive. They are
- * stored with their view, so that no frame shows the values of another one.
+ * Shader values for a pair, requested after the picture is done; null until the values arrive.
+ * Values are stored with a view, so that no frame shows the values of another view.
  */
 export function useMeasured(
   stage: Stage | null | undefined,
@@ -60,7 +60,7 @@ export function useMeasured(
   return measured?.of === of ? measured.values : null;
 }
 
-/** Errors of shaders against the tables of their references, by the id of their source. */
+/** Errors of shaders against reference tables, by source id. */
 export type ErrorsOf = ReadonlyMap<string, Errors>;
 
 /** The errors of both sides, computed one after the other once the probe's values are known. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of directions and the models' float64 values for them, which the probe shows.
+// The probe shows pairs of directions and float64 values of the models.
 
 import type { Triple, Vec3 } from "./data";
 import { piFCos, type Model } from "./models/table";
@@ -36,13 +36,13 @@ export function values(of: Model, { wo, wi }: Pair, color: Vec3, roughness: numb
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
-/** The difference a - b in the channel where it is largest. */
+/** The difference a - b in the channel with the largest difference. */
 export function apart(a: Vec3, b: Vec3): number {
   const each = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
   return each.reduce((most, one) => (Math.abs(one) > Math.abs(most) ? one : most));
 }
 
-/** Errors below this are float32 roundings; a shader's value accumulates dozens of them. */
+/** Smaller errors are due to rounding in float32, which a shader's value accumulates. */
 const ROUNDING = 64 * 2 ** -24;
 
 /** Whether two values differ by more than rounding. */

@@ -33,8 +33,8 @@ export interface State {
   readonly shown: SideName; // the side that the comparison "flicker" shows
   readonly shape: Shape;
   /**
-   * The viewer's direction in degrees relative to the shape's default: around it, and up. Not used
-   * for the sphere.
+   * The viewer's direction relative to the shape's default, in degrees. `turn` is around the shape
+   * and `tilt` is up. The sphere ignores both angles.
    */
   readonly turn: number; // [-180, 180]
   readonly tilt: number; // [-90, 90]

@@ -12,8 +12,8 @@ import type { Side, State } from "./state";
 import { actualModel, hasTable, meantModel, type Sources, sourceOf, valuesOf } from "./view";
 
 /**
- * "within": a visible difference within the tolerance. "differs": from the reference, in a way that
- * the specification permits.
+ * "within" is a visible difference within the tolerance. "differs" is a difference from the
+ * reference that the specification permits.
  */
 type Kind = "correct" | "within" | "wrong" | "differs" | "model" | "unknown" | "measuring";
 
@@ -27,7 +27,7 @@ export interface Verdict {
 export interface ErrorOf {
   readonly error: number;
   readonly row: number; // index of the pair or view with the largest difference
-  readonly form: ShaderForm | null; // permitted form that matches where the reference does not
+  readonly form: ShaderForm | null; // permitted form that matches, if the reference does not
 }
 
 export interface Errors {
@@ -95,7 +95,7 @@ function isRight(kind: Kind): boolean {
   return kind === "correct" || kind === "within";
 }
 
-/** Whether the inputs of a document's material have changed since `mxeon check` judged it. */
+/** Whether inputs of a document's material have changed since `mxeon check` judged the material. */
 function isChanged(source: ShaderSource, state: State, side: Side): boolean {
   const drawn = valuesOf(source, state, side);
   return source.inputs.some(
@@ -144,7 +144,7 @@ function byReference(source: ShaderSource, { able, errors }: Evidence): Verdict 
   return { kind: "wrong", badge: "wrong", text: `${off}${named}.` };
 }
 
-/** A sentence about how the actual model differs from the intended one. */
+/** A sentence about how the actual model differs from the intended model. */
 function wrong(actual: Model, meant: Model, state: State): string {
   const { color, roughness } = state;
   const here = Math.abs(worstPoint(actual, meant, state).apart);
@@ -161,7 +161,7 @@ function wrong(actual: Model, meant: Model, state: State): string {
   return `${parts.join(": ")}. ${amount.join(" ")}`;
 }
 
-/** The largest difference of two albedos in closed form; 0 if one has none. */
+/** The largest difference of two albedos; 0 if a model has no closed form. */
 function albedoError(actual: Model, meant: Model, { color, roughness }: State): number {
   if (!actual.albedoDir || !meant.albedoDir) return 0.0;
   let most = 0.0;

@@ -22,19 +22,19 @@ export function sourceOf(sources: Sources, side: Side): Source {
   return sources.get(side.source)!;
 }
 
-/** The model of a side; null if it is only known from the shader's values. */
+/** The model of a side; null if only the shader's values reveal the model. */
 export function actualModel(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.model);
   return source.actual && !isChanged(source, state) ? model(byFlag(source.actual, side)) : null;
 }
 
-/** The intended model of a side; null if it is unknown. */
+/** The intended model of a side, or null. */
 export function meantModel(source: Source, side: Side, state: State): Model | null {
   if (source.kind === "model") return model(source.meant);
   return source.meant && !isChanged(source, state) ? model(byFlag(source.meant, side)) : null;
 }
 
-/** Whether a shader is judged by its reference table, because the page has no model for it. */
+/** Whether a shader is judged by its reference table, because the page lacks the model. */
 export function hasTable(source: Source): source is ShaderSource {
   return source.kind === "shader" && !!source.reference && !(source.meant && source.actual);
 }
@@ -68,19 +68,19 @@ export function shortTitle(source: Source, side: Side): string {
   return source.title;
 }
 
-/** A view whose color follows from the requested albedo, if there is one. */
+/** A view whose color follows from the requested albedo, if the reader requests an albedo. */
 export function consistent(state: State, sources: Sources): State {
   if (!state.keep) return state;
   const of = inversionModel(state, sources);
   return { ...state, color: enter(of, state.wanted, state.roughness, state.average) };
 }
 
-/** The model whose albedo is inverted: the intended one of the left side. */
+/** The intended model of the left side, whose albedo is inverted. */
 function inversionModel(state: State, sources: Sources): Model {
   return meantModel(sourceOf(sources, state.left), state.left, state) ?? model("eon");
 }
 
-/** The color that gives an albedo. */
+/** The color for which a model has the wanted albedo. */
 export function enter(
   of: Model,
   wanted: Readonly<Triple>,
@@ -155,7 +155,7 @@ export function materialsOf(data: PageData): ReadonlyMap<string, string> {
   );
 }
 
-/** A view of a material with both libraries, or with the only one that has it. */
+/** A view of a material with both libraries, or with the only library that has the material. */
 export function withMaterial(state: State, sources: Sources, stem: string): Partial<State> {
   const ids = [...sources.keys()].filter((id) => stemOf(id) === stem);
   const [first, second = first] = ids;
@@ -179,7 +179,7 @@ function lightFor(state: State, stem: string): Partial<State> {
   return stem.startsWith("lobe/") ? FRONT : first;
 }
 
-/** The first view of a page: its first document, if it has one. */
+/** The first view of a page, which shows the first document, if any. */
 export function firstView(data: PageData): State {
   const sources = sourcesOf(data);
   const documents = data.sources.filter((source) => source.id.startsWith("document/"));

@@ -5,7 +5,7 @@ import type { Triple, Vec3 } from "../data";
 
 const { PI } = Math;
 
-/** Value of one channel for a pair of directions; `parameter` is roughness, or sigma in radian. */
+/** Value of one channel for a pair of directions; `parameter` is roughness, or sigma in radians. */
 export type Brdf = (wo: Vec3, wi: Vec3, rho: number, parameter: number) => number;
 
 /**

@@ -6,7 +6,7 @@ import * as glsl from "glsl:models";
 import type { Vec3 } from "../data";
 import { albedoDirQuadrature, bisect, type Brdf } from "./albedo";
 
-/** Directional albedo of one channel; `parameter` is roughness, or sigma in radian. */
+/** Directional albedo of one channel; `parameter` is roughness, or sigma in radians. */
 type AlbedoDir = (mu: number, rho: number, parameter: number) => number;
 /** Average albedo of one channel. */
 type AlbedoAvg = (rho: number, parameter: number) => number;
@@ -19,7 +19,7 @@ export interface Model {
   readonly parameter: "roughness" | "sigma" | null;
   readonly albedoDir?: AlbedoDir; // closed form, if known
   readonly albedoAvg?: AlbedoAvg;
-  /** For defects only: the intended model, and where the defect differs from it. */
+  /** For defects only: the intended model, and where the defect differs from that model. */
   readonly meant?: string;
   readonly wrong?: string;
 }
@@ -171,7 +171,7 @@ export function piFCos(of: Model, wo: Vec3, wi: Vec3, rho: number, parameter: nu
   return wi[2] <= 0.0 ? 0.0 : Math.PI * of.brdf(wo, wi, rho, parameter) * wi[2];
 }
 
-/** Directional albedo, in closed form if there is one, else by quadrature with `nodes`. */
+/** Directional albedo, in closed form if known, otherwise by quadrature with `nodes`. */
 export function albedoDir(
   of: Model,
   mu: number,
@@ -196,7 +196,7 @@ export function albedoAvg(of: Model, rho: number, parameter: number): number {
   return sum;
 }
 
-/** Color of one channel that gives this albedo, at normal incidence or on average. */
+/** Color of one channel for a wanted albedo, at normal incidence or on average. */
 export function rhoFromAlbedo(
   of: Model,
   seen: number,

@@ -7,7 +7,7 @@ uniform vec4 stage_frame; // Width, height, diameter of the sphere and focal len
 // Offset in pixels; 0 in the first frame, whose samples are the pixel centers.
 uniform vec2 stage_jitter;
 
-// Twice the distance in pixels from the center of the frame. It is an odd integer without jitter.
+// Twice the distance in pixels from the frame's center; without jitter, an odd integer.
 vec2 stage_from_center()
 {
     return 2.0 * (gl_FragCoord.xy + stage_jitter) - stage_frame.xy;

@@ -16,7 +16,7 @@ export const DIFFERENCE_COLORS: readonly Vec3[] = [
   [0.45, 0.11, 0.04],
 ];
 
-/** Decode an sRGB value to a linear one. */
+/** Decode an sRGB value to a linear value. */
 export function linear(encoded: number): number {
   return encoded <= 0.04045 ? encoded / 12.92 : ((encoded + 0.055) / 1.055) ** 2.4;
 }

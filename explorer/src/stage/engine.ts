@@ -20,13 +20,13 @@ const ALBEDO_ANGLES = 256; // size of the albedo table of a model without a clos
 const FAR = 1e8;
 const FINE_SAMPLES = 1024; // samples of glossy lobes in white surroundings, for checks of values
 
-/** Diameter of the sphere in pixels: even, so that its pixels match the gl host's picture. */
+/** Diameter of the sphere in pixels, which is even so that pixels match pictures of the gl host. */
 export function diameterOf(size: Size, state: State): number {
   return 2 * Math.round(Math.min(...size) / 2 / camera({ ...state, shape: "sphere" }).span);
 }
 
 /**
- * The largest difference and its row; large values are compared relatively, as in checks of values.
+ * The largest difference and its row. Large values are compared relatively, as in checks of values.
  */
 function farthest(
   values: readonly (Triple | null)[],
@@ -44,9 +44,7 @@ function farthest(
   return [errors[row] ?? 0, Math.max(row, 0)];
 }
 
-/**
- * The error against the reference, and the permitted form that matches if the reference does not.
- */
+/** The error against the reference, and a permitted form that matches if the error is too large. */
 function nearest(
   kind: "direct" | "white",
   reference: ReferenceTable,
@@ -72,11 +70,11 @@ export class Engine {
   private readonly pixel: gpu.Target; // target for a single value
   private readonly upright: WebGLTexture; // normal for a single value: the z axis
   private readonly one: gpu.Target; // geometry of a single pixel
-  private readonly drawn = new Map<string, string>(); // inputs of each pass when it was last drawn
+  private readonly drawn = new Map<string, string>(); // inputs of the last drawing of each pass
   private targets: Targets;
   private traced: Paths | null = null;
   private uniforms: gpu.Uniforms = {};
-  /** Errors of the programs, by their source. */
+  /** Errors of programs, by source. */
   readonly errors = new Map<string, string>();
   /** The source whose program is being compiled. */
   waiting = "";
@@ -152,14 +150,14 @@ export class Engine {
   }
 
   /**
-   * pi f cos(theta_i) of a side's own shader for one pair; null while it compiles or if it fails.
+   * pi f cos(theta_i) of a side's own shader for one pair; null while compiling or on failure.
    */
   value(state: State, side: SideName, wo: Vec3, wi: Vec3): Triple | null {
     const alone: State = { ...state, shape: "sphere", light: 1, surroundings: "none" };
     return this.isValued(alone, side) ? this.single(alone, side, wo, wi, {}) : null;
   }
 
-  /** Largest errors of a shader with its own inputs; null while it compiles or if it fails. */
+  /** Largest errors of a shader with its own inputs; null while compiling or on failure. */
   check(source: ShaderSource): Errors | null {
     const { pairs, views } = this.data;
     const view = ownView(source);
@@ -314,7 +312,7 @@ export class Engine {
     if (program) gpu.drawPass(this.gl, program, target, size, { ...this.uniforms, ...uniforms });
   }
 
-  /** Draw a side's material, if it has one that works. */
+  /** Draw a side's material, unless the material fails. */
   private material(state: State, side: SideName, size: Size): void {
     const source = this.sources.get(state[side].source);
     if (!source || this.errors.has(source.id)) {

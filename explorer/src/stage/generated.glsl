@@ -11,7 +11,7 @@ uniform highp sampler2D stage_lit;
 uniform mat3 stage_camera;
 uniform vec4 stage_frame;
 uniform float stage_intensity;
-// Height of the center around which the fibers bend, and 1. Both numbers are 0 for other shapes.
+// Fibers: (height of the center of the bend, 1). Other shapes: (0, 0).
 uniform vec2 stage_bend;
 
 void main()

@@ -23,7 +23,7 @@ interface Pending {
   program: Program | null;
 }
 
-/** A frame to draw into, and its textures. */
+/** A frame to draw into, with its textures. */
 export interface Target {
   readonly frame: WebGLFramebuffer;
   readonly textures: readonly WebGLTexture[];
@@ -40,7 +40,7 @@ export class Programs {
     this.parallel = gl.getExtension("KHR_parallel_shader_compile");
   }
 
-  /** The program, or null while it compiles; throws the compiler's message. */
+  /** The program, or null during compilation; throws the compiler's message. */
   get(pixel: Text): Program | null {
     let pending = this.known.get(pixel.key);
     if (!pending) this.known.set(pixel.key, (pending = this.start(pixel.make())));

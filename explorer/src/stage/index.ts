@@ -62,8 +62,7 @@ function fitted({ clientWidth, clientHeight }: HTMLCanvasElement): Size {
 
 /** A stage on a canvas; null unless WebGL2 can draw into float32 frames. */
 export function createStage(canvas: HTMLCanvasElement, data: PageData): Stage | null {
-  // Resize the canvas before creating its context, because resizing it later would wait for the
-  // driver.
+  // Resize the canvas before the context exists. Later, resizing would wait for the driver.
   [canvas.width, canvas.height] = fitted(canvas);
   const gl = canvas.getContext("webgl2", ATTRIBUTES) as WebGL2RenderingContext | null;
   if (!gl?.getExtension("EXT_color_buffer_float")) return null;
@@ -128,10 +127,7 @@ export class Stage {
     return { wo, wi, normal };
   }
 
-  /**
-   * pi f cos(theta_i) of both shaders for a pair of directions; null while they compile or if they
-   * fail.
-   */
+  /** pi f cos(theta_i) of both shaders for a pair; null while compiling or on failure. */
   evaluate(
     { wo, wi }: { wo: Vec3; wi: Vec3 },
     state: State,
@@ -140,7 +136,7 @@ export class Stage {
     return left && right ? { left, right } : null;
   }
 
-  /** Largest errors of a shader against its reference; null while it compiles or if it fails. */
+  /** Largest errors of a shader against its reference; null while compiling or on failure. */
   check(source: ShaderSource): Errors | null {
     return this.engine?.check(source) ?? null;
   }
@@ -150,13 +146,13 @@ export class Stage {
     return this.engine?.errors.get(source) ?? "";
   }
 
-  /** Convert a point of the picture to the light that it represents. */
+  /** Convert a point of the picture to the light that the point represents. */
   toLight(x: number, y: number, state: State): { azimuth: number; elevation: number } {
     const [width, height] = this.fit();
     return lightAt(state, fromSide(state, x), y, width / height);
   }
 
-  /** Convert a light to the point of the picture that represents it. */
+  /** Convert a light to the point of the picture that represents the light. */
   fromLight(state: State): [number, number] {
     const [width, height] = this.fit();
     const [x, y] = lightMark(state, width / height);
@@ -239,7 +235,7 @@ export class Stage {
     return fitted(this.canvas);
   }
 
-  /** Update the canvas' size if it has changed. */
+  /** Update the canvas if its size has changed. */
   private sized([width, height]: Size): Size {
     const { canvas } = this;
     if (canvas.width !== width || canvas.height !== height) {
@@ -278,8 +274,8 @@ export class Stage {
     const full = this.fit();
     if (this.index === 0) this.pace.begin(full, state.paths);
     const size = this.drawnSize();
-    // While the picture moves, the browser enlarges the canvas, because a software driver needs
-    // longer to enlarge it than to draw the material.
+    // While the picture moves, the browser enlarges the canvas. A software driver would need more
+    // time to enlarge the picture than to draw the material.
     const canvas = this.pace.moving ? size : full;
     const done = engine.frame(state, size, full, this.sized(canvas), this.index);
     this.tellErrors(engine);
@@ -295,7 +291,7 @@ export class Stage {
     this.schedule();
   };
 
-  /** Whether the driver is still drawing the last frame; measures the frame when it has ended. */
+  /** Whether the driver is still drawing the last frame; measures the time of a finished frame. */
   private isBusy(): boolean {
     const { fence, gl } = this;
     if (!fence) return false;
@@ -335,7 +331,7 @@ export class Stage {
     }
   }
 
-  /** Report a status unless it is the last one reported. */
+  /** Report a status that differs from the last status. */
   private tell(status: Status): void {
     const said = JSON.stringify(status);
     if (said !== this.said) for (const listener of this.listeners) listener(status);

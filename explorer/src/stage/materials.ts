@@ -16,7 +16,7 @@ const MIPS = 8; // mip levels of a map with 128 columns
 
 const ATLAS = /^uniform vec2 (\w+_uv_scale);/gm;
 
-/** The model of a source; null if it has none. */
+/** The model of a source, or null. */
 export function modelOf(source: Source, flag: boolean): ModelName | null {
   if (source.kind === "model") return source.model;
   return source.actual && (flag ? source.actual.on : source.actual.off);
@@ -32,7 +32,7 @@ export function pathText(texts: Texts, source: Source, side: Side, shape: Shape)
   return texts.modelPaths(model, side.sampler, shape);
 }
 
-/** Programs of a side; throws an error if it cannot be drawn this way. */
+/** Programs of a side; throws an error if the side cannot be drawn. */
 export function wanted(texts: Texts, source: Source, side: Side, state: State): Text[] {
   if (state.paths) return [pathText(texts, source, side, state.shape)];
   if (source.kind === "shader") return [texts.generated(source)];

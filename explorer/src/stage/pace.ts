@@ -67,7 +67,7 @@ export class Pace {
     this.stop();
   }
 
-  /** Number of frames averaged for a picture at rest; 1 while it moves. */
+  /** Number of frames averaged for a picture at rest; 1 in motion. */
   frames([width, height]: Size): number {
     if (this.moving) return 1;
     const affordable = Math.floor(SMOOTHING_BUDGET / Math.max(this.rate * width * height, 1));

@@ -11,7 +11,7 @@ uniform int stage_bounces; // Maximum number of scattering events on a path.
 uniform float stage_share; // Weight of this pass in the averages.
 uniform vec3 stage_light; // Unit vector towards the light, in the world frame.
 uniform float stage_intensity;
-uniform vec2 stage_bend; // As in generated.glsl.
+uniform vec2 stage_bend; // Fibers: (height of the center of the bend, 1); other shapes: (0, 0).
 
 // Mean of the paths, and the fraction of paths that hit an object.
 layout(location = 0) out vec4 stage_radiance;
@@ -65,7 +65,7 @@ bool stage_drawn(Hit hit, Point p, vec3 wo, vec3 u, out vec3 wi, out vec3 weight
     return true;
 }
 
-// Radiance of one path, which ends when it leaves the scene or has been scattered too often.
+// Radiance of a path. A path ends outside the scene or after stage_bounces scattering events.
 vec4 stage_path(vec3 origin, vec3 direction)
 {
     vec3 radiance = vec3(0.0);
@@ -76,7 +76,7 @@ vec4 stage_path(vec3 origin, vec3 direction)
             vec3 sky = textureLod(stage_environment, stage_latlong(direction), 0.0).xyz;
             return bounce == 0 ? vec4(0.0) : vec4(radiance + sky * throughput, 1.0);
         }
-        // The other shapes are infinitely thin sheets.
+        // Only spheres have an inside. All other shapes are infinitely thin sheets.
         bool inside = STAGE_SHAPE < 2 && dot(origin, origin) < 1.0;
         vec3 outward = inside ? -hit.normal : hit.normal;
         Point p = stage_point(origin + hit.t * direction, outward, inside && !(material_is_thin_walled));

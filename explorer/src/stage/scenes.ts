@@ -50,7 +50,7 @@ export function bend(shape: Shape): [number, number] {
   return shape === "fiber" ? [BEND, 1] : [0, 0];
 }
 
-/** Whether the light may reach a point from behind its surface, which then is not shadowed. */
+/** Whether light may reach a point from behind the surface, so that the point has no shadow. */
 export function isUnshadowed(shape: Shape): boolean {
   return shape === "sphere" || shape === "fiber";
 }
@@ -68,12 +68,12 @@ export function camera({ shape, turn, tilt, zoom, comparison }: Viewed): Camera 
   return { axes, eye, distance, span: part / zoom };
 }
 
-/** Convert a direction from the world frame to the viewer's. */
+/** Convert a direction from the world frame to the viewer's frame. */
 export function toView({ axes }: Camera, world: Vec3): Triple {
   return [dot(axes[0], world), dot(axes[1], world), dot(axes[2], world)];
 }
 
-/** Convert a direction from the viewer's frame to the world's. */
+/** Convert a direction from the viewer's frame to the world frame. */
 function toWorld({ axes }: Camera, view: Vec3): Triple {
   const along = (k: 0 | 1 | 2) =>
     axes[0][k] * view[0] + axes[1][k] * view[1] + axes[2][k] * view[2];
@@ -98,8 +98,8 @@ export function lightVector({ azimuth, elevation }: Pick<State, "azimuth" | "ele
 
 /**
  * The light for a point of the picture, [0, 1]^2 from the top left. A point in the middle means a
- * light from the viewer, one at the subject's rim a light from the side, and one at twice that
- * distance a light from behind.
+ * light from the viewer, a point at the subject's rim means a light from the side, and a point at
+ * twice the distance of the rim means a light from behind.
  */
 export function lightAt(state: State, x: number, y: number, aspect: number) {
   const view = camera(state);
@@ -119,7 +119,7 @@ function tenth(degrees: number): number {
   return Math.round(10 * degrees) / 10;
 }
 
-/** The point of the picture for a light; inverse of `lightAt`. */
+/** The point of the picture for a light, which is the inverse of `lightAt`. */
 export function lightMark(state: State, aspect: number): [number, number] {
   const view = camera(state);
   const [x, y, z] = toView(view, lightVector(state));

@@ -14,7 +14,7 @@
 
 #define STAGE_FLOOR_RHO 0.35
 
-// The open ball: where the cut is, and the foot.
+// The cut through the ball, and the ball's foot.
 #define STAGE_CUT_LEFT vec3(0.9205049, 0.0, 0.3907311)
 #define STAGE_CUT_RIGHT vec3(-0.4848096, 0.0, 0.8746197)
 #define STAGE_CUT_AT 0.04
@@ -25,13 +25,12 @@
 #define STAGE_FOOT_TOP -0.8 // The shell covers the foot's top here, so the foot needs no lid.
 #define STAGE_GROUND -1.15
 
-// The cloth.
 #define STAGE_CLOTH_WIDTH 1.5
 #define STAGE_CLOTH_HEIGHT 1.12
 #define STAGE_CLOTH_DEPTH 0.27
 #define STAGE_CLOTH_STEPS 32
 
-// The fibers: rings around an axis along z; the frame shows their tops.
+// The fibers are rings around an axis along z. Only the tops of the rings are visible.
 #define STAGE_BEND -1.9
 #define STAGE_FIRST_RING 1.25
 #define STAGE_RING_GAP 0.2
@@ -46,7 +45,7 @@ struct Hit {
     int part;
 };
 
-// Replace the nearest hit so far by a nearer one in front of the ray's origin.
+// Replace the nearest hit so far if the new hit is nearer and in front of the ray's origin.
 void stage_keep(inout Hit hit, float t, vec3 normal, int part)
 {
     if (t > 0.0 && t < hit.t)
@@ -82,7 +81,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
     return hit;
 }
 #elif STAGE_SHAPE == 2
-// Distance in z from the cloth, and its slopes in x and y: two waves that grow towards the hem.
+// Depth z of the cloth and the slopes of z in x and y. Two waves grow towards the hem.
 vec3 stage_cloth(vec2 p)
 {
     float depth = 0.125 - 0.06 * p.y;
@@ -94,7 +93,7 @@ vec3 stage_cloth(vec2 p)
     return vec3(depth * wave, depth * across, depth * down - 0.06 * wave);
 }
 
-// Distance of a point on the ray in front of the cloth.
+// Signed distance in z from the cloth to a point, positive in front of the cloth.
 float stage_before_cloth(vec3 p)
 {
     return p.z - stage_cloth(p.xy).x;
@@ -129,7 +128,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
     return hit;
 }
 #elif STAGE_SHAPE == 4
-// Distance from the nearest fiber, and the vector to it from its core.
+// xyz: vector from the core of the nearest fiber; w: distance from the fiber's surface.
 vec4 stage_fiber(vec3 p)
 {
     vec2 across = p.xy - vec2(0.0, STAGE_BEND);
@@ -159,7 +158,7 @@ Hit stage_nearest(vec3 origin, vec3 direction)
     return hit;
 }
 #else
-// Distances of a point inside the cut from its two upright faces and its sill.
+// Distances of a point in the cut from the two upright faces and from the sill of the cut.
 vec3 stage_in_cut(vec3 p)
 {
     return vec3(dot(p, STAGE_CUT_LEFT) - STAGE_CUT_AT, dot(p, STAGE_CUT_RIGHT) - STAGE_CUT_AT,
@@ -171,8 +170,8 @@ bool stage_cut(vec3 p)
     return all(greaterThan(stage_in_cut(p), vec3(0.0)));
 }
 
-// A plane face of the cut through the shell, seen from the cut. `other` makes the test of bounds
-// ignore the face itself.
+// A plane face of the cut through the shell, seen from the cut. `other` excludes the face itself
+// from the test of bounds.
 void stage_face(inout Hit hit, vec3 origin, vec3 direction, vec3 normal, float height, vec3 other)
 {
     float t = (height - dot(origin, normal)) / dot(direction, normal);
@@ -235,8 +234,8 @@ float stage_opacity(vec3 p)
 #endif
 }
 
-// Visible share of the surroundings at a point. For the sphere, and for planes from which the
-// sphere hides a cap of share cosine / d^2, it is exact. Other shapes have a rough estimate, which
+// Visible share of the surroundings at a point. The share is exact for the sphere, and for planes
+// from which the sphere hides the share cosine / d^2. All other shares are rough estimates, which
 // path tracing does not use.
 float stage_ambient(vec3 p, vec3 normal)
 {

@@ -75,7 +75,7 @@ function sky(w: Vec3): Triple {
 
 const RADIANCE: Record<"studio" | "sky", (w: Vec3) => Triple> = { studio, sky };
 
-/** The radiance map of the surroundings; a single pixel if they are uniform. */
+/** The radiance map of the surroundings; uniform surroundings have a single pixel. */
 export function radianceMap(name: Surroundings, own: Texels | null): SkyMap {
   if (name === "own") {
     // The address may come from a page with a custom environment, which is missing here.

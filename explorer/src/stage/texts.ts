@@ -45,7 +45,7 @@ function valueOf(model: ModelName): string {
   return `${model}_brdf(wo, wi, rho, r)`;
 }
 
-/** GLSL of a model's albedo in closed form; null if it has none. */
+/** GLSL of a model's albedo in closed form, or null. */
 function albedoOf(model: ModelName): string | null {
   if (!rowOf(model).albedoDir) return null;
   if (model === "lambert") return "rho";

@@ -3,8 +3,7 @@
 //
 // Arguments are wo and wi in the local frame, rho per channel, and the model's roughness or sigma.
 
-// EON that clamps dot(wo, wi) to at least 1e-8 before it computes s. The dot product is s + mu_o
-// mu_i.
+// EON with dot(wo, wi) = s + mu_o mu_i clamped to at least 1e-8.
 vec3 eon_clamped_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float mu_o = min(wo.z, 1.0);
@@ -37,14 +36,14 @@ vec3 qon_tinted_twice_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)
     return rho * qon_brdf(wo, wi, rho, sigma);
 }
 
-// rho (E_EON + (1 - rho) E_FON).
+// Albedo of eon_rho_cubed_brdf: rho (E_EON + (1 - rho) E_FON).
 vec3 eon_rho_cubed_albedo_dir(float mu, vec3 rho, float roughness)
 {
     vec3 fon = (vec3(1.0) - rho) * fon_albedo_dir(mu, roughness);
     return rho * (eon_albedo_dir(mu, rho, roughness) + fon);
 }
 
-// 1 - (1 - rho) E_FON.
+// Albedo of fon_white_lobe_brdf: 1 - (1 - rho) E_FON.
 vec3 fon_white_lobe_albedo_dir(float mu, vec3 rho, float roughness)
 {
     return vec3(1.0) - (vec3(1.0) - rho) * fon_albedo_dir(mu, roughness);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files dropped on the page. If `mxeon explore` serves the page, it generates and judges their
-// shaders, which a page cannot do by itself. Any other page shows the command to run.
+// Files dropped on the page. If `mxeon explore` serves the page, the command generates and judges
+// the shaders. Any other page shows the command to run.
 
 import { useEffect, useState } from "preact/hooks";
 import { stemOf, withMaterial } from "../view";
@@ -56,7 +56,7 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
   );
 }
 
-/** Dropped files by path, including those in folders, because documents name images by paths. */
+/** Dropped files and files in dropped folders, by path, because documents name images by path. */
 async function filesOf(dropped: DataTransfer | null): Promise<Map<string, File>> {
   const files = new Map<string, File>();
   const add = async (entry: FileSystemEntry): Promise<void> => {

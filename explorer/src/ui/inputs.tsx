@@ -57,7 +57,7 @@ function Group({ source, data, state, change }: ViewProps & { readonly source: S
 
 interface FieldProps {
   readonly port: Port;
-  readonly alone: boolean; // whether its label is unique, so that the node's name is not shown
+  readonly alone: boolean; // whether the label is unique, so that the node's name is not shown
   readonly value: Value;
   readonly onChange: (value: Value) => void;
 }
@@ -71,7 +71,7 @@ function Field({ port, alone, value, onChange }: FieldProps) {
     const step = port.type === "integer" ? 1 : (max - min) / 200;
     return <Slider label={label} {...{ value, min, max, step, onChange }} />;
   }
-  // An index of refraction is not a color: color ranges end at 1.
+  // Color ranges end at 1. Inputs with larger values, such as indices of refraction, are no colors.
   if (port.type === "color3" && Math.max(...(port.value as Triple)) <= 1) {
     return <Color label={label} value={value as Triple} onChange={onChange} />;
   }

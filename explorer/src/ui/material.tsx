@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Color and roughness, the resulting albedo, and the color that gives an albedo.
+// Color and roughness, the resulting albedo, and the color for a wanted albedo.
 
 import { useMemo } from "preact/hooks";
 import type { Triple, Vec3 } from "../data";
@@ -13,7 +13,7 @@ function perChannel(color: Vec3, one: (rho: number) => number): Triple {
   return [one(color[0]), one(color[1]), one(color[2])];
 }
 
-/** Color and roughness; albedos are slow, so they wait until the first picture is drawn. */
+/** Color and roughness. Slow albedos wait until the first picture is drawn. */
 export function Material({
   sources,
   state,
@@ -98,7 +98,7 @@ function Albedos({ of, color, roughness }: AlbedosProps) {
   );
 }
 
-/** The color that gives an albedo, if the material is one rough diffuse lobe. */
+/** The color for a wanted albedo, if the material is one rough diffuse lobe. */
 export function Wanted(props: ViewProps) {
   const { sources, state } = props;
   const of = meantModel(sourceOf(sources, state.left), state.left, state);

@@ -31,7 +31,7 @@ function brightest(color: Vec3): number {
 
 const RADIUS = 120;
 const REACH = 89; // degrees on each side of the normal
-const STEEPEST = 1.2; // lights within this angle from the normal, in radian, fit into the plot
+const STEEPEST = 1.2; // lights within this angle from the normal, in radians, fit into the plot
 
 /** pi f by the angle of the light, for the probe's viewer. */
 export function Polar({ curves, pair, color, roughness }: PlotProps) {

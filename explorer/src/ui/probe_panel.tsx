@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe: a pair of directions, both sides' values for it, and their errors.
+// The probe shows the values of both sides for a pair of directions, and the errors.
 
 import type { ComponentChild } from "preact";
 import { useMemo, useState } from "preact/hooks";
@@ -12,7 +12,7 @@ import { actualModel, LETTER, meantModel, SIDES, sourceOf, tabled } from "../vie
 import { AlbedoPlot, type Curve, Polar } from "./plots";
 import type { ViewProps } from "./sides";
 
-/** pi f cos of each shader; null while it compiles or if it fails. */
+/** pi f cos of each shader; null while the shader compiles, or if the shader fails. */
 export interface Measured {
   readonly left: Triple | null;
   readonly right: Triple | null;
@@ -24,7 +24,7 @@ interface ProbeProps extends ViewProps {
   readonly row: number | null; // row of the reference tables that belongs to `pair`
   readonly measured: Measured | null; // null during motion or if no shader runs
   readonly able: boolean; // whether shaders run
-  readonly drawn: boolean; // whether the first picture is done; plots wait for it
+  readonly drawn: boolean; // whether the first picture is done; plots wait for the picture
 }
 
 const DECIMALS = 7;

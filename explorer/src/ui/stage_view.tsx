@@ -33,7 +33,7 @@ function short([x, y]: readonly [number, number]): [number, number] {
   return [Number(x.toFixed(4)), Number(y.toFixed(4))];
 }
 
-/** The view after the pointer moved by some pixels: the subject follows it, as in three.js. */
+/** The view after the pointer moved by some pixels. The subject follows the pointer. */
 function turned({ turn, tilt }: State, x: number, y: number): Partial<State> {
   return {
     turn: ((turn - DEGREES * x + 540) % 360) - 180,
