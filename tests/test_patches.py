@@ -110,6 +110,13 @@ def test_a_patch_applies_alone(materialx, page):
         applied(materialx, tag, page)
 
 
+def test_a_repair_that_upstream_merged_is_cited_by_its_page_and_patch():
+    for page, issue in ISSUES.items():
+        merged = [str(issue.pull)] if issue.pull else re.findall(r"#(\d+)$", issue.kind)
+        for text in (issue.text, *(each.read_text() for each in FILES.get(page, ()))):
+            assert all(number in text for number in merged), page
+
+
 KNOWN = json.loads(versions.RECORD.read_text())
 
 

@@ -60,7 +60,7 @@ class Issue:
     # Results that, with the patch, either pass or still fail for one of the listed causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
     needs: tuple[str, ...] = ()  # other pages whose patches must also be applied
-    kind: str = ""  # kind of the patch: "choice", "NaN" or "compiles"
+    kind: str = ""  # "choice", "NaN", "compiles" or "in main after DATE, #PULL", for a patch
     pull: int = 0  # number of the pull request that repairs the defect after the release
     cause: Cause | None = None  # first cause in the diagnosis of the first row
     # A file of MaterialX, the text that the patch replaces in the file, and the new text.
