@@ -70,7 +70,7 @@ class Backend(ABC):
     # Kinds of states, such as "lights", for which the check `states` only uses the first state.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
-    fewer: ClassVar[Counts | None] = None  # counts for specs that would draw more pairs
+    fewer: ClassVar[Counts | None] = None  # replaces the counts of specs that would draw more pairs
     engine_errors: ClassVar[Errors | None] = None  # replaces the errors of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
@@ -143,7 +143,7 @@ class Backend(ABC):
         return tuple(batch for batch in batches if len(batch.wo))
 
     def adapted(self, batch: Batch) -> Batch:
-        """The pairs of a batch that the backend supports, with supported inputs."""
+        """The batch, limited to pairs and inputs that the backend supports."""
         return batch
 
     @cached_property
@@ -218,9 +218,6 @@ def isotropic(batch: Batch) -> Batch:
     return batch.altered(**inputs)
 
 
-# Hosts that evaluate arbitrary pairs of directions.
-
-
 class Evaluating(Backend):
     """An engine that runs the generated shader for arbitrary pairs of directions."""
 
@@ -290,10 +287,7 @@ class Evaluating(Backend):
     def together(
         self, batch: Batch, irradiance: NDArray[np.float32] | None, client: Client, two: bool
     ) -> Array:
-        """Values of one or two lobes under a client's lights and environment.
-
-        Backends that do not support several lights use a single light.
-        """
+        """Values of one or two lobes under a client's lights and environment."""
         shader = self.two if two else self.shader
         if "lights" in self.plain:
             return np.pi * self.evaluate(batch, "direct", shader=shader)
@@ -332,10 +326,9 @@ class Media(Evaluating):
 
 # OSL returns closures as trees of arguments and weights. The models evaluate the trees in float64.
 
-# Few pairs suffice, because the models compute the values of closures. More pairs would only test
-# the models.
+# Few direction pairs suffice. More pairs would only test the models that evaluate the closures.
 FEW_CLOSURES = Counts(1 << 11, 1 << 6, 1 << 8, albedos=16, materials=8, mirrored=1 << 8)
-SOME = 1 << 8  # maximum number of special pairs of each kind
+SOME = 1 << 8  # maximum number of special direction pairs of each kind
 # The sharpest lobe (alpha 1e-4) amplifies a float64 rounding, 2^-53, by 1e8. The product is less
 # than one float32 rounding, 2^-24.
 ARGUMENTS = sum_of(roundings(1, "of arguments printed with nine digits"), exact=True)
@@ -345,7 +338,7 @@ GRAPH = sum_of(roundings(4 * 16, "(16 from an input to an argument, times the sl
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
-    """One batch with the pairs of all batches. All batches must have inputs of the same names."""
+    """One batch with the direction pairs of all batches, which must have equal input names."""
     if len(batches) == 1:
         return batches[0]
     wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
@@ -690,8 +683,6 @@ CYCLES_NOISE = sum_of(
 
 
 class Pictures(Backend):
-    """A host that renders pictures of a sphere."""
-
     @property
     def size(self) -> int:
         return PICTURE_SIZE // self.spec.coarse
@@ -910,7 +901,7 @@ def ways_of(host: str) -> tuple[type[Backend], ...]:
 
 
 def own_nodes(host: str) -> tuple[Spec, ...]:
-    """The judged nodes that a renderer defines, after importing the renderer's backends."""
+    """The judged nodes that a renderer defines. The call also imports the renderer's backends."""
     nodes = host_row(host).nodes
     return tuple(nodes(host)) if nodes else ()
 

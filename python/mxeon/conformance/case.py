@@ -132,7 +132,7 @@ class Case:
 
     @property
     def changes(self) -> Mapping[str, Changes]:
-        """Inputs before and after a change, for each input that the engine can set."""
+        """For each input that can be set, all inputs before and after a change of that input."""
         changes, unset = self.spec.changes, self.backend.unset
         return {name: changes[name] for name in changes if name not in unset}
 
@@ -183,7 +183,7 @@ def throughputs(case: Case, *branches: str) -> Iterator[Compared]:
 
 
 def frames(case: Case) -> Iterator[Compared]:
-    """Values in rotated and unrotated frames. Half of the normals point away from the viewer."""
+    """Values in rotated frames, compared with values in unrotated frames."""
     turned = case.backend.turned
     # Use a fifth of the pairs, because sums over the environment are slow.
     subset = turned.where(slice(None, None, 5))
@@ -216,7 +216,7 @@ def unchanged(before: Array, after: Array) -> NDArray[np.bool_]:
 
 
 def edge_values(case: Case) -> Compared:
-    """Values and albedos at the edges of the domain, which must be finite."""
+    """Values and albedos, which must be finite, at the edges of the domain."""
     batch = case.backend.edges
     values = np.concatenate([case.direct(batch), case.albedo(batch)], axis=1)
     return Compared(batch, values, np.zeros_like(values))

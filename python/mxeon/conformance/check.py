@@ -80,7 +80,7 @@ class Check:
     # Whether the verdict is "differs" instead of "failed" if a permitted function explains the
     # values.
     open: bool = False
-    # Whether a spec can be measured on a host with the given name, and with a client's methods.
+    # Whether a spec can be measured on a host, by name, and with a client's lighting methods.
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
     methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 
@@ -100,7 +100,7 @@ class Check:
 
         Negative values count as 0, because the check `dark` judges negative values.
         """
-        model = copy(case.backend)  # a backend that returns the function's values
+        model = copy(case.backend)  # a backend that returns the values of the function `title`
         for name, candidates in (
             ("direct", case.spec.all_candidates if isinstance(case.spec, ValueSpec) else ()),
             ("albedo", case.candidates("albedo") if isinstance(case.spec, LobeSpec) else ()),
@@ -124,7 +124,7 @@ class Check:
     def applies_to(
         self, spec: Spec, backend: type[backends.Backend], host: str, methods: Methods = GENERATED
     ) -> bool:
-        """Whether the check applies to a node on a host, with a backend and a client's methods."""
+        """Whether the check applies to a node on a host, with a client's lighting methods."""
         methods = backend.methods.over(methods)
         key = self.judged
         return (
@@ -141,7 +141,7 @@ class Check:
         return key if isinstance(key, Tolerance) else case.tolerance(key)
 
     def judge(self, case: Case) -> Result:
-        """The result for a case, including the control and, on failure, a diagnosis."""
+        """The result for a case, with the negative control and, on failure, a diagnosis."""
         spec, claim = case.spec, case.spec.claim or self.claim
         names = self.key, claim, spec.title, case.host.name, case.library
         claimed, model = case.backend.claims
@@ -155,7 +155,7 @@ class Check:
             causes = diagnosis.causes
             if diagnosis.first in UNTOLD and (compared := compared_of(self.measure(case))):
                 causes = (searched(diagnosis.first, compared, tolerance),)
-            # Errors of a permitted function count as failures unless `open` is set.
+            # Errors that a permitted function explains are failures unless `open` is set.
             permitted = self.open and diagnosis.permitted
             if permitted and not isinstance(self.measure, Comparison) and diagnosis.distances:
                 permitted = self.is_reproduced(case, diagnosis.first.key, tolerance)

@@ -62,7 +62,7 @@ HAIR, SHEEN = "chiang_hair_bsdf", "sheen_bsdf"
 # Errors are weighted by cos(theta_o), because the normal changes by 1 / cos(theta_o) per pixel.
 POINT_AND_VALUE = roundings(16, "of a pixel's position"), roundings(32, "in the value")
 PLAIN = sum_in(Quantity.PICTURE, *POINT_AND_VALUE, exact=True)
-# OpenGL permits image filters with weights of 8 bits. Neighboring texels differ by 1 at most.
+# OpenGL permits 8-bit filter weights, so the error is 2^-8 if neighboring texels differ by 1.
 TEXTURED = single(2.0**-8, Quantity.PICTURE, "8-bit filter weights")
 CODES = f"filtered sRGB codes, times the slope {SLOPE:.3g} of sRGB"
 ENCODED = single(SLOPE * TEXTURED.value, Quantity.PICTURE, CODES)

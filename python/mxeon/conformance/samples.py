@@ -67,7 +67,7 @@ class Batch:
     wi: Array  # directions to the light in local frames, (N, 3)
     # Node inputs and "occlusion", (N, ...) or constant. Normals and tangents are in world space.
     inputs: Mapping[str, Array]
-    scene: Scene | None = None  # scene of a picture whose points have these directions
+    scene: Scene | None = None  # scene of a picture, if the pairs are points of the picture
     frame: Array | None = None  # axes of local frames as columns, (N, 3, 3); world axes if None
 
     def altered(self, **inputs: ArrayLike) -> "Batch":

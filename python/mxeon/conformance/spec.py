@@ -128,7 +128,7 @@ NO_ABILITY = Ability(0)
 class EngineError(NamedTuple):
     """An error of an engine's built-in function, measured on each engine."""
 
-    words: str  # description of the error
+    words: str
     measure: Callable[[base.Host], float]
     factor: float = 1.0  # factor by which the node amplifies the error
 
@@ -395,7 +395,7 @@ class EngineFunction:
 
     name: str  # last part of the name of a GLSL function that returns the expression
     expression: str  # GLSL expression in x, or in x and y
-    exact: Callable[..., Array]  # NumPy equivalent
+    exact: Callable[..., Array]
 
     def errors(self, host: base.Host, *arguments: Array) -> Array:
         """Errors of a host's values for float32 arguments, (N,)."""

@@ -310,7 +310,7 @@ def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     spec, views = case.of(PbrSpec), case.backend.views[0]
     row, visible = np.arange(len(views.wo))[:, np.newaxis], {}
     wo = np.where(row == 1, NORMAL, views.wo)
-    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # peaks of microfacets
+    wi = np.where(row % 2 == 1, wo * [-1.0, -1.0, spec.side], views.wi)  # mirror directions
     for name in {"weight", "occlusion"} & views.inputs.keys():
         visible[name] = np.maximum(views.inputs[name], LEAST_WEIGHT)
     views = replace(views, wo=wo, wi=wi).altered(**visible)

@@ -371,7 +371,7 @@ def diagnose_methods(case: Case) -> Diagnosis:
 
 
 def modes(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Compare mode RT with mode R, and mode T with 0. Each comparison has a cause to report."""
+    """Compare the reflection of mode RT with mode R, and the reflection of mode T with 0."""
     spec = case.of(TransmissionSpec)
     mode_R = case.another(spec.reflection) if spec.reflects else None
     unlike = "_unlike_R" if mode_R else ""
@@ -518,9 +518,9 @@ def wrong_inputs(case: Case) -> list[str]:
 
 Function = Callable[[Batch], Array]
 ROUGHNESSES = (1.0, 0.3)  # alphas with strong and with weak compensation
-# Alphas that need almost no compensation, so that shaders may average F over fewer cosines.
+# Alphas that need almost no compensation. Shaders may average F over fewer cosines.
 SMOOTH = (0.04, 0.005)
-LEAST_F = 0.01  # films with a smaller F are not compared
+LEAST_F = 0.01  # films with a smaller Fresnel reflectance are not compared
 THIN_LIMIT = 1e-3  # thickness in nm at which a film must have no effect
 
 
@@ -558,7 +558,7 @@ def film_limit(case: Case) -> list[Compared]:
 
 
 def film_energy(case: Case) -> Iterator[Compared]:
-    for batch in case.few[::2]:  # skip special pairs; other checks cover films of IOR 0
+    for batch in case.few[::2]:  # skip special pairs, because other checks cover films of IOR 0
         most = case.direct(mirror_of(case, batch))
         yield Compared(batch, np.maximum(case.direct(batch), most), most)
 

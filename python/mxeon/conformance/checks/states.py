@@ -442,7 +442,7 @@ def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
         else:
             sky = samples.sky_map() if kind == "uneven" else None
             values = drawn(batch, partial(case.backend.albedo, irradiance=sky), layout)
-            if "tint" in batch.inputs and not case.opaque:  # if two-sided, tinted on entry and exit
+            if "tint" in batch.inputs and not case.opaque:  # two-sided light is tinted twice
                 twice = np.repeat([groups[n].client.two_sided for n, _ in rows], EACH)
                 tint = batch.inputs["tint"]
                 batch = batch.altered(tint=np.where(twice[:, np.newaxis], tint * tint, tint))

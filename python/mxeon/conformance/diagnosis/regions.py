@@ -160,7 +160,6 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("mirror"), (wo * [-1.0, -1.0, 1.0] == wi).all(axis=1)
     yield Region("half_vector_upright"), upright
     yield Region("viewer_along_tangent"), (np.abs(wo) == [1.0, 0.0, 0.0]).all(axis=1)
-    # Regions by the cosine of the view or the light, then by both cosines.
     for name, mu in (("viewer", mu_o), ("light", mu_i)):
         yield Region(f"{name}_along_normal"), mu >= 1.0
         yield Region(f"{name}_cosine_above", low=0.99), mu > 0.99
@@ -172,7 +171,6 @@ def _directions(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     for limit in COSINES:
         both = (mu_i >= 0.0) & (np.maximum(mu_o, mu_i) <= limit)
         yield Region("cosines_within", low=0.0, high=limit), both
-    # Regions by the side of the light, and by the angle between view and light.
     yield Region("light_below_horizon"), mu_i < 0.0
     yield Region("light_above_horizon"), mu_i > 0.0
     yield Region("dot_above", low=0.999), dot > 0.999
@@ -187,7 +185,6 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     weight, occlusion = (np.broadcast_to(inputs[name], count) for name in USUAL)
     colors = [batch.inputs[name] for name in COLORS if name in batch.inputs]
     color = np.broadcast_to(colors[0] if colors else 0.5, (count, 3))
-    # Regions by weight, occlusion and roughness.
     yield Region("weight_negative"), weight < 0.0
     yield Region("weight_zero"), weight == 0.0
     yield Region("weight_not_positive"), weight <= 0.0
@@ -202,13 +199,11 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("roughness_largest"), roughness >= 0.999999 * roughness.max()
     yield Region("roughness_above_1"), roughness > 1.0
     yield Region("roughness_positive"), roughness > 0.0
-    # Regions by inputs that only some nodes have.
     for name, port in INDICES.items():
         index = _rows(batch.inputs.get(port, 1.0), count)
         yield Region(f"{name}_zero"), np.asarray((index == 0.0).any(axis=1))
     if "cuticle_angle" in batch.inputs:
         yield Region("cuticle_tilted"), _rows(batch.inputs["cuticle_angle"], count)[:, 0] != 0.5
-    # Regions by color and by normal.
     yield Region("color_white"), (color == 1.0).all(axis=1)
     yield Region("color_black"), (color == 0.0).all(axis=1)
     yield Region("color_gray"), (color == color[:, :1]).all(axis=1)
@@ -221,7 +216,7 @@ def _inputs(batch: Batch) -> Iterator[tuple[Region, Mask]]:
     yield Region("normal_away"), (normal * batch.normal).sum(axis=1) < 0.0
 
 
-HALF = 0.5  # cosine that divides views, and lights, into two regions
+HALF = 0.5  # cosine that divides views (or lights) into two regions
 
 
 def errors(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[tuple[Errors, ...], str]:

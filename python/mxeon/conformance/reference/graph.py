@@ -69,7 +69,7 @@ class Graph(Nodes):
         self._steps: dict[Path, Step] = {}
 
     def element(self, name_path: str) -> Array:
-        """Value of the renderable element with this name path, (N, 3).
+        """Value of the renderable element with the given name path, (N, 3).
 
         Raise NotRun if the graph contains an unsupported node.
         """

@@ -87,7 +87,7 @@ class Judge:
                 host.close()
 
     def _host(self, name: str) -> base.Engine:
-        """The host with this name, which is opened at the first call."""
+        """The host called `name`, which is opened at the first call."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = self._open(name)

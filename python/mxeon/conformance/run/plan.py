@@ -161,7 +161,7 @@ class Task:
     subject: str  # title of a node, path of a document, SHADER_FUNCTIONS or EVERY_NODE
     host: str
     library: str
-    seed: int = 1  # seed of the samples
+    seed: int = 1
     methods: Methods = UNCHOSEN  # lighting methods that the client chose
 
     def __str__(self) -> str:
@@ -305,7 +305,7 @@ def make_plan(
             if not host_row(host).scenes:
                 tasks += [Task(DOCUMENT, file, host, library) for file in readable]
             tasks += _on_host(host, library, paths, everywhere, methods.over(GENERATED))
-            if resumable and host == "gl":  # a report shows these pictures
+            if resumable and host == "gl":  # reports show studio pictures
                 tasks += [Task(STUDIO, file, host, library) for file in readable[:STUDIED]]
     for host in hosts:  # renderers' own nodes and materials need no library
         for spec in backends.own_nodes(host):
