@@ -104,7 +104,7 @@ HOSTS = (
         scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
-    # WHITE_LIGHT is missing, because Storm integrates an environment with its own directions.
+    # The scene WHITE_LIGHT is left out, because Storm sums an environment over its own directions.
     Row(
         "storm",
         "glsl",
@@ -114,8 +114,8 @@ HOSTS = (
         rounding=2.0**-10,  # pixels are truncated to half floats
     ),
     Row("shadewire", "glsl", "functions", scenes=(SIDE, BACK)),
-    # WHITE_LIGHT is missing, because Cycles renders an environment with noise. No closure of Cycles
-    # agrees with QON for s < 0.
+    # The scene WHITE_LIGHT is left out, because Cycles renders environments with noise. No closure
+    # of Cycles agrees with QON for s < 0.
     Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
     Row("testrender", "osl", "rendered", surfaces=True),
     Row("msl", "msl", needs="Metal, which macOS alone has"),
@@ -153,7 +153,7 @@ def host_row(name: str, *additional: Row) -> Row:
 
 
 def front_lit_only(host: str, model: str) -> bool:
-    """Whether the row of a host in `HOSTS` lists a model in `front_lit`. False without a row."""
+    """Whether `HOSTS` has a row for a host that lists the model in `front_lit`."""
     return any(row.name == host and model in row.front_lit for row in HOSTS)
 
 

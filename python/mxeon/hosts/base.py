@@ -68,7 +68,7 @@ class Engine(ABC):
         return self.methods.over(self.default)
 
     def choose(self, methods: Methods) -> None:
-        """Use these methods for all shaders, or raise NotRun."""
+        """Use `methods` for all shaders, or raise NotRun."""
         if methods != UNCHOSEN:
             raise NotRun(f"{self.name}: its methods cannot be chosen; got {methods}")
 
@@ -111,10 +111,10 @@ class Query(NamedTuple):
 
 
 class Host(Engine):
-    """An engine that executes generated shaders. A host overrides the functions that it supports.
+    """An engine that executes generated shaders. Subclasses override the supported methods.
 
-    Other functions raise `Unsupported`, and a shader that the compiler refuses raises
-    `ShaderError`. Results are in the order of the request, and are linear radiance or in 1/sr.
+    Unsupported methods raise `Unsupported`, and a shader that the compiler refuses raises
+    `ShaderError`. Results are in the order of the request. Pictures are linear radiance.
     """
 
     target: ClassVar[str]
@@ -173,7 +173,7 @@ class Host(Engine):
         return lru_cache(maxsize=2)(self._drawn_table)
 
     def _drawn_table(self, text: str) -> Array:
-        """Texels of a table of albedos. Row 0 has the smallest alpha."""
+        """Texels of a table of GGX albedos. Row 0 is for the smallest alpha."""
         raise NotRun(f"{self.name}: albedo table: this host binds none")
 
     def picture(self, shader: Shader, scene: Scene) -> Array:

@@ -63,8 +63,8 @@ def prelude(text: str, end: int) -> Prelude | None:
     return Prelude(GEOMETRY.sub("", function[2]), inputs | properties)
 
 
-# Closure type of a BSDF's call, and first step of the evaluation loop. Shaders call BSDFs that do
-# not transmit light only in the first two branches.
+# For each branch, the closure type of BSDF calls and the first step of the evaluation loop. Opaque
+# BSDFs are called only in the first two branches.
 CLOSURES = {
     "direct": ("CLOSURE_TYPE_REFLECTION", 1),
     "environment": ("CLOSURE_TYPE_INDIRECT", 2),
@@ -79,8 +79,8 @@ LIT = "lit"  # branch that sums lights, the reflected environment and the transm
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
 # An evaluation is a loop. Steps 0 and 1 are lights, step 2 is the reflected environment, and step 3
 # is the transmitted environment. All branches share one program, which compiles as fast as a
-# program for one branch. STEPS is the name of a vector, which consists of the first step, the end
-# of the loop, and the factor of a light. The factor is -1 if the output is the throughput.
+# program for one branch. The vector `mxeon_steps` has the first step, the end of the loop, and a factor
+# for lights, which is -1 if the output is the throughput.
 STEPS = "mxeon_steps"
 LOOP = """{type} mxeon_sum = {type}(0.0);
 for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxeon_step)
@@ -102,7 +102,7 @@ SURFACE = "surface_normal"  # the geometric normal; "normal" is the shading norm
 NO_POSITION = (0.0, 0.0, 1e31)  # the statement POSITION replaces this placeholder
 POSITION = "P = P.z < 1e30 ? P : {};"
 FILES = ("filename", "string")  # types of inputs that an evaluation does not set
-# An image fills its texture if these scales and offsets are set. Keys end the variables' names.
+# Values for which an image fills the whole texture, keyed by the end of the variable's name.
 PLACED = {"_uv_scale": (1.0, 1.0), "_uv_offset": (0.0, 0.0)}
 # Matches a macro that converts an integer to a boolean, because WGSL has no boolean uniforms.
 BOOLEAN = re.compile(r"^#define (\w+) bool\(\1\)$", re.MULTILINE)
@@ -205,7 +205,7 @@ def _graph_call(shader: Shader, wo: ArrayLike, inputs: Inputs) -> BsdfCall:
     statements, ports = _main(text), _ports(shader)
     words = _words(statements + color[1])
     arguments: Arguments = {"V": ("vector3", wo), "P": ("vector3", NO_POSITION)}
-    # Inputs of these types stay uniforms, and are not replaced by variables.
+    # Inputs of the types in `unset` stay uniforms. Variables replace all other inputs.
     unset = (*FILES, "color4", "vector4", "matrix33", "matrix44")
     names = [name for name in words if name in ports and ports[name].type not in unset]
     arguments |= {name: _argument(name, ports, inputs) for name in names} | _placed(words)

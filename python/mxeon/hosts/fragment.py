@@ -106,7 +106,7 @@ def bsdf_evaluation(query: Query) -> tuple[str, Columns]:
     shader = query.shader
     dialect, call = DIALECTS[shader.target], bsdf_call(query)
     before, output = _before_main(shader.stages["pixel"], dialect)
-    # The default of P varies, because subsurface scattering divides by the derivatives of P.
+    # By default, P varies from pixel to pixel, because subsurface_bsdf divides by fwidth(P).
     body = [
         POSITION.format("vec3(gl_FragCoord.xy, 0.0)"),
         call.statements,

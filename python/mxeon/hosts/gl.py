@@ -124,7 +124,7 @@ class GlHost(FragmentHost):
         textures: Mapping[str, moderngl.Texture | moderngl.TextureArray],
         size: tuple[int, int],
     ) -> tuple[moderngl.Framebuffer, moderngl.VertexArray]:
-        """Bind textures and a black frame, and return the frame with a triangle over all pixels."""
+        """Bind textures and a black frame. Returns the frame, and a triangle over all pixels."""
         context = self._context
         frame = context.framebuffer([context.renderbuffer(size, components=4, dtype="f4")])
         frame.use()

@@ -37,7 +37,7 @@ WHITE_TEXELS = np.ones((2, 2, 3), dtype=np.float32)
 # first mipmap of the environment is read. docs/hosts.md compares numbers of directions.
 EVALUATION = {"u_envRadianceSamples": 1024, "u_envRadianceMips": 1}
 PICTURE_DIRECTIONS = 256
-DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # enough, as nothing is summed
+DARK = {"u_envRadianceSamples": 1, "u_envRadianceMips": 1}  # settings without an environment
 TRIANGLE = {  # attributes of a triangle's three vertices
     "i_position": np.array([[-1, -1, 0], [3, -1, 0], [-1, 3, 0]], dtype="f4"),
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
@@ -162,7 +162,7 @@ FRAME_UNIFORMS = (
 
 
 class Frame(NamedTuple):
-    """A program with the data of a frame. Each of the `arguments` has a row per element, or one."""
+    """A program with the data of a frame. Arguments have one row, or one row per element."""
 
     vertex: str
     pixel: str

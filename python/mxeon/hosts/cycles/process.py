@@ -18,7 +18,7 @@ from mxeon.shaders.inner_lobes import SUBSURFACE
 from mxeon.shaders.library import data_folder
 from mxeon.shaders.scene import Scene
 
-CHECKOUT = data_folder()  # an installed package has no environment in this folder
+CHECKOUT = data_folder()  # contains .venv-cycles, unless the package is installed
 
 
 def interpreter(name: str = "cycles") -> Path:
@@ -87,7 +87,7 @@ def request(scene: Scene, lobes: Sequence[str]) -> dict[str, Any]:
 
 
 def approximations(scene: Scene, lobes: Sequence[str]) -> tuple[str, ...]:
-    """Reasons why a picture of these lobes is wrong, if paths are too few or too short."""
+    """Reasons why a picture with `lobes` below the surface needs more or longer paths."""
     if not lobes:
         return ()
     paths, reasons = request(scene, lobes), []

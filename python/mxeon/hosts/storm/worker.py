@@ -204,7 +204,7 @@ def import_usd(root: str, libraries: str) -> Foreign:
         raise ImportError("no package bpy")
     package = Path(found.submodule_search_locations[0])
     sys.path += map(str, package.glob("*/python/lib/python*/site-packages"))
-    # The import of OpenUSD reads these environment variables.
+    # OpenUSD reads the environment variables PXR_... when imported.
     os.environ["PXR_PLUGINPATH_NAME"] = str(package / "lib" / "usd")
     standard = Path(root or package / "lib" / "materialx", "libraries")
     os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(standard)
