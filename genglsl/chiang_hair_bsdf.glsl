@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Node chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model. The lobe p is A_p M_p N_p.
 //
-// Roughness is at least 1e-8 rad^2 along the fiber and 1e-4 rad around it, to suit float32. In
-// the local frame, x is the fiber and z is the normal.
+// Roughness is at least 1e-8 rad^2 along and 1e-4 rad around the fiber, to suit float32. In the
+// local frame, x is the fiber and z is the normal.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
@@ -160,7 +160,7 @@ vec3 chiang_hair_sum(vec3 wo, vec3 wi, mat3 tint, vec2 roughness_R, vec2 roughne
         tilted = chiang_hair_product(chiang_hair_product(tilted, back), chiang_hair_product(back, back));
     }
 
-    // Add TRRT+, uniform in azimuth.
+    // Add TRRT+, which is uniform in azimuth.
     float v = max(roughness_TRT.x, 1e-8);
     float M = chiang_hair_along(inclined_i, inclined_o, v);
     return total + tint[2] * section.A_rest * M * 0.5 * M_PI_INV;

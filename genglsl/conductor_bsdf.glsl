@@ -4,7 +4,7 @@
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
 
-// Least index of refraction. If index and extinction were 0, MaterialX's Fresnel curve would be 0 /
+// Least ior. If ior and extinction were 0, MaterialX's Fresnel curve would be 0 /
 // 0 along the normal.
 #define CONDUCTOR_LEAST_INDEX 1e-8
 

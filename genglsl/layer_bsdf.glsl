@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node layer for two lobes. The throughput of the top, at least 0, multiplies the base.
+// Node layer for two lobes. The throughput of the top (at least 0) multiplies the base.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 

@@ -15,7 +15,7 @@ void translucent_bsdf(ClosureData closureData, float weight, vec3 color, vec3 N,
 
     N = -mx_forward_facing_normal(N, closureData.V);
 
-    // The occlusion is not used, because it describes the viewer's side.
+    // The occlusion describes the viewer's side and is not used.
     if (closureData.closureType == CLOSURE_TYPE_REFLECTION)
     {
         bsdf.response = color * weight * clamp(dot(N, closureData.L), 0.0, 1.0) * M_PI_INV;

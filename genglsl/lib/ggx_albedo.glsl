@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Directional albedo of isotropic GGX microfacets with height-correlated Smith shadowing.
 //
-// mu is the cosine between wo and the normal, and alpha is the roughness of GGX. Both lie in [1e-8,
-// 1].
+// mu, the cosine between wo and the normal, and alpha, the roughness of GGX, lie in [1e-8, 1].
 
 // Energy 1 - E_ss that perfectly reflecting facets lose: [MaterialX2026], Energy Compensation.
 // Source: tools/fits/ggx_albedo.py. Domain: mu and alpha in [1e-4, 1]. Largest absolute error:

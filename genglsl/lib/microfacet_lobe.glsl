@@ -6,8 +6,8 @@
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
 
-// Least IOR. In float32, 1 plus the square of a smaller IOR is 1, so MaterialX's curve is 0 / 0
-// along the normal.
+// Least ior. In float32, 1 + ior^2 is 1 below 2.4e-4, and MaterialX's curve is 0 / 0 along the
+// normal.
 #define MICROFACET_LEAST_INDEX 1e-3
 
 #define MICROFACET_MIRROR_INDEX 1e8

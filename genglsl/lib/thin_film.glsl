@@ -101,7 +101,7 @@ vec3 thin_film_c0(float r21, ThinFilmComplex r23)
     return (R12 - 1.0) * (1.0 - R23) / max(1.0 - R12 * R23, THIN_FILM_LEAST);
 }
 
-// Section Color Conversion.
+// XYZ to Rec. 709: section Color Conversion.
 vec3 thin_film_rec709(vec4 S)
 {
     return (S.x + S.y) * THIN_FILM_COLOR_X + S.z * THIN_FILM_COLOR_Y + S.w * THIN_FILM_COLOR_Z;
@@ -172,15 +172,15 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
 // F_airy at cosine mu, averaged over nearby cosines if width > 0. A film index below 1 counts as 1.
 vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
 {
-    // Section Three-Layer Geometry: g = n mu_t. The factors of n^2 - 1 preserve a small mu.
+    // Section Three-Layer Geometry: g = n mu_t. Factoring n^2 - 1 keeps the digits of a small mu.
     float n = max(fd.tf_ior, 1.0);
     float g = sqrt((n - 1.0) * (n + 1.0) + mu * mu);
 
-    // Section First Interface.
+    // Amplitudes r_21: section First Interface.
     float r21_s = (g - mu) / max(g + mu, THIN_FILM_LEAST);
     float r21_p = (g - n * n * mu) / max(g + n * n * mu, THIN_FILM_LEAST);
 
-    ThinFilmComplex z_s, z_p;  // r_23, then r_21 r_23
+    ThinFilmComplex z_s, z_p;  // r_23, later r_21 r_23
     thin_film_substrate(n, g / n, (1.0 - mu) * (1.0 + mu), fd, z_s, z_p);
     vec3 C0_s = thin_film_c0(r21_s, z_s);
     vec3 C0_p = thin_film_c0(r21_p, z_p);
@@ -189,8 +189,7 @@ vec3 thin_film_fresnel(float mu, float width, FresnelData fd)
     z_p.re *= r21_p;
     z_p.im *= r21_p;
 
-    // Section Optical Path Difference: phi = 2 pi Delta = 4 pi d g, with the derivative 4 pi d mu /
-    // g by mu.
+    // Section Optical Path Difference: phi = 2 pi Delta = 4 pi d g, and dphi / dmu = 4 pi d mu / g.
     float scale = 4.0e-9 * M_PI * fd.tf_thickness;
     float phi = scale * g;
     float spread = scale * width * mu / max(g, THIN_FILM_LEAST);

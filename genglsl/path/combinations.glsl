@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Closures that combine two closures, for path tracers. A draw chooses one of the two.
+// Combinations of two closures for path tracers. A draw chooses either closure.
 
 #include "lib/questions.glsl"
 #include "../layer_bsdf.glsl"

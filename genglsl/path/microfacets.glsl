@@ -18,8 +18,8 @@
 // Least alpha. Rounded directions cannot resolve narrower lobes.
 #define PATH_LEAST_ALPHA 1e-4
 
-// Least index of refraction n, and least |n - 1|. If n is 1, refraction does not determine the
-// facet.
+// The index of refraction n and |n - 1| are at least this value. If n is 1, refraction does not
+// determine the facet.
 #define PATH_LEAST_BEND 1e-3
 
 // Least albedo that determines a lobe's probability. A fit may be 0 although facets reflect.

@@ -94,7 +94,7 @@ float oren_nayar_behind_slope(float mu_o, float mu_i, float S_o, float S_i)
 }
 
 // BRDF of [OrenNayar1994], functional approximation for Gaussian slopes with interreflection. alpha
-// is the larger polar angle, and beta is the smaller. The code divides both by pi / 2.
+// is the larger polar angle, beta the smaller. The code divides both angles by pi / 2.
 //   f = rho / pi [C1 + C2 cos(phi) tan(beta) + C3 (1 - |cos(phi)|) tan((alpha + beta) / 2)]
 //       + 0.17 rho^2 / pi k (1 - (2 beta / pi)^2 cos(phi)),  k = sigma^2 / (sigma^2 + 0.13)
 vec3 oren_nayar_brdf(vec3 wo, vec3 wi, vec3 rho, float sigma)

@@ -79,8 +79,8 @@ LIT = "lit"  # branch that sums lights, the reflected environment and the transm
 LIGHTS, SECOND_LIGHT, SKY = "mxeon_lights", "mxeon_second", "mxeon_sky"
 # An evaluation is a loop. Steps 0 and 1 are lights, step 2 is the reflected environment, and step 3
 # is the transmitted environment. All branches share one program, which compiles as fast as a
-# program for one branch. The vector `mxeon_steps` has the first step, the end of the loop, and a factor
-# for lights, which is -1 if the output is the throughput.
+# program for one branch. The vector `mxeon_steps` has the first step, the end of the loop, and a
+# factor for lights, which is -1 if the output is the throughput.
 STEPS = "mxeon_steps"
 LOOP = """{type} mxeon_sum = {type}(0.0);
 for (int mxeon_step = int(mxeon_steps.x); mxeon_step < int(mxeon_steps.y); ++mxeon_step)
