@@ -112,7 +112,7 @@ RUNS = (
     ([made(FAILED), made(FAILED, host="osl"), made(DIFFERS)], {}, 1,
      f"2 of 3 checks failed: 1 on gl with eonlib, 1 on osl with eonlib; {ALLOWED}", ""),
     ([made(FAILED, diagnosis=DIRECTIONS), made()], {}, 1, "1 of 2 checks failed on gl with eonlib.",
-     "failed: gl with eonlib, value, .*in other directions"),
+     "failed: gl with eonlib, value, .*in wrong directions"),
     ([made(FAILED), made(NOT_RUN), made(NOT_RUN, diagnosis=caused("follows"))], {}, 1,
      "1 of 3 checks failed on gl with eonlib; 1 did not run.", ""),
     ([made(), made(NOT_RUN, reason="no GPU")], {}, 3, "Nothing failed, but 1 of 2 checks did not run.",

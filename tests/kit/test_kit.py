@@ -223,7 +223,7 @@ FAULTS = {
     "100 times as bright": lambda image: 100.0 * image,
     "black": np.zeros_like,
     "1.23 times as bright": lambda image: 1.23 * image,
-    "not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise": (
+    "not Lambert's cosine in any known encoding: tone-mapped, or lit differently": (
         lambda image: np.tanh(4.0 * image) ** 0.5
     ),
     "": lambda image: image,

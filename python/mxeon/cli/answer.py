@@ -284,7 +284,7 @@ def _look(run: Run, document: str, result: Result) -> str:
     if not (unused and _is_right(result)):
         return words.look(result)
     inputs = " for inputs that this material does not use" if all(unused) else ""
-    return f"the picture is right; its nodes are wrong{inputs}"
+    return f"the picture is right; the material's nodes are wrong{inputs}"
 
 
 def _is_visible(result: Result) -> bool:
@@ -357,7 +357,7 @@ def _cell(run: Run, results: Sequence[Result]) -> str:
     text = {WRONG: "wrong", ELSEWHERE: "wrong for other inputs"}.get(rank, model_of(shown.subject))
     check = "" if rank == RIGHT else f" ({shown.check})"
     if rank == RIGHT and any(each.verdict == DIFFERS for each in results):
-        text += ", differs as allowed"
+        text += ", allowed difference"
     if shown.error is None:
         return text
     if not shown.tolerance:

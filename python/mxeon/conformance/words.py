@@ -152,9 +152,9 @@ FAULTS = {
     "roughness_halved": "the roughness is halved",
     "roughness_ignored": "the roughness is ignored; {x:g} is used instead",
     "weight_ignored": "the weight is ignored",
-    "weight_ignored_above_0": "the weight is ignored but for 0 and below",
-    "occlusion_and_weight_ignored": "the occlusion is ignored, and the weight",
-    "occlusion_and_weight_ignored_above_0": "the occlusion is ignored, and the weight but for 0 and below",
+    "weight_ignored_above_0": "weights above 0 are ignored",
+    "occlusion_and_weight_ignored": "the occlusion and the weight are ignored",
+    "occlusion_and_weight_ignored_above_0": "the occlusion and weights above 0 are ignored",
     "weight_twice": "the weight is applied twice",
     "occlusion_ignored": "the occlusion is ignored",
     "occlusion_twice": "the occlusion is applied once too often",
@@ -181,14 +181,14 @@ DEFECTS = {
     "seen": "the mean of 1 - F over the visible normals",
     "seen_over_masking": "the mean of 1 - F over the visible normals, divided by G_1 of the view",
     "wrong_with_methods": "with {methods}",
-    "other_directions": "the environment is looked up in other directions, or with other weights",
-    "retroreflective_normal": "retroreflection mirrors the view at another normal than the node's",
+    "other_directions": "the environment is looked up in wrong directions or with wrong weights",
+    "retroreflective_normal": "retroreflection mirrors the view about a normal other than the node's",
     "retroreflective_environment": "retroreflective is ignored or wrong in an environment",
     "reflects_light": "reflects a light",
     "reflects_light_unlike_R": "reflects a light, unlike mode R",
     "reflects_environment": "reflects an environment",
     "reflects_environment_unlike_R": "reflects an environment, unlike mode R",
-    "passes_other_light": "passes other light to its base (branch {branch})",
+    "passes_other_light": "passes the wrong light to its base (branch {branch})",
     "mode_R_transmits": "mode R transmits light",
     "wrong_effect": "no effect, or a wrong one: {all}",
     "inputs_without_effect": "inputs without effect: {all}",
@@ -206,30 +206,30 @@ DEFECTS = {
     "albedo_outside": "the albedo is wrong with {0} {numbers}",
     "throughput_outside": "the throughput is wrong with {0} {numbers}",
     "right_without": "the layer equation holds without the {0}",
-    "throughput_of_lobes": "by itself, what passes {all} is wrong",
-    "no_single_lobe": "no single lobe explains it; the error is smallest without {0} and {1}",
+    "throughput_of_lobes": "the light that passes {all} alone is wrong",
+    "no_single_lobe": "no single lobe explains the error, which is smallest without {0} and {1}",
     "lobes_of_graph": "the graph is not the cause: see the checks of its lobes",
-    "lobes_too": "its lobes have errors of their own: see their checks",
+    "lobes_too": "its lobes have errors, too: see the checks of each lobe",
     "sum_of_lobes": "see the checks of each lobe and of `layer`",
     "release": "{released}",
-    "newer": "it has {all}, which the installed MaterialX lacks, and may be of a newer version",
+    "newer": "the library has {all}, which the installed MaterialX lacks, and may be newer",
     "clash": "{0} and {1} both define {2} in {3}, so a shader with both does not compile",
     "other_argument": "{1} of {0} is {2}; MaterialX released {3}",
-    "drawn_density": "what is drawn has another density than that of material_pdf, from {any}",
-    "drawn_weight": "the weight times density is not material_evaluate's value, from {0}",
-    "sampled_density": "the density of material_sample is not material_pdf's, from {0}",
-    "undrawn_light": "light comes from where no draw goes, from {0}",
-    "other_refraction": "an environment is looked up in other directions than those of visible facets",
-    "medium_in_reflection": "a medium takes light that is reflected above it",
-    "medium_between": "a medium between two lobes does not take its share",
-    "negative_color": "a negative color reflects other light than in MaterialX's own text",
-    "other_path_value": "a path tracer gets another value than a rasterizer",
-    "other_path_emission": "a path tracer gets another emission than the node's equation",
+    "drawn_density": "from {any}, samples do not have the density of material_pdf",
+    "drawn_weight": "from {0}, weight times density is not material_evaluate's value",
+    "sampled_density": "from {0}, the density of material_sample is not material_pdf's",
+    "undrawn_light": "from {0}, some light is never sampled",
+    "other_refraction": "the environment is not looked up in the directions of visible facets",
+    "medium_in_reflection": "a medium absorbs light that is reflected above it",
+    "medium_between": "a medium between two lobes has a wrong transmittance",
+    "negative_color": "a negative color does not reflect as in MaterialX's own code",
+    "other_path_value": "a path tracer and a rasterizer get different values",
+    "other_path_emission": "a path tracer's emission is not that of the node's equation",
     "other_random_numbers": "random numbers are not those of pcg4d",
-    "other_path_albedo": "draws carry other light than a rasterizer reflects and transmits",
-    "inside_is_not_outside": "light inside a solid is not that outside of one of the inverse index",
+    "other_path_albedo": "samples do not carry the light that a rasterizer reflects and transmits",
+    "inside_is_not_outside": "light inside a solid is not as outside a solid with the inverse IOR",
     "curve_below_0": "the curve is not clamped: values are below 0",
-    "light_from_inside": "a clear solid gains or loses light, or lets other light out than in",
+    "light_from_inside": "a clear solid gains or loses light, or lets out more or less than enters",
     "density_differs": "the density differs from the paper's listings",
     "samples_differ": "the samples do not follow the density",
     "lookup_opposite": "the environment is looked up opposite to the normal",
@@ -240,26 +240,26 @@ DEFECTS = {
     "lookup_surface_normal": "the environment is looked up along the surface's normal instead of the node's",
     "lookup_facing_surface_normal": "the environment is looked up along the surface's normal turned toward the viewer, instead of the node's",
     "lookup_not_facing": "the environment is looked up along a normal that is not turned toward the viewer",
-    "lookup_radiances": "the environment is looked up in the map of radiances",
-    "lookup_black": "the environment is looked up nowhere: it is black",
+    "lookup_radiances": "the environment is looked up in the radiance map",
+    "lookup_black": "the environment is never looked up: it is black",
     "lookup_other_side": "the environment is looked up on the other side of the surface",
-    "lookup_viewer_side": "the environment is looked up on the viewer's side alone",
+    "lookup_viewer_side": "the environment is looked up only on the viewer's side",
     "same_names": "nodes {0} have the values of one of them; see docs/upstream/same_names.md",
     "material_graph": "a material that a nodegraph defines is not generated; see docs/upstream/material_graphs.md",
     "own_document_refused": "the library refuses a document of mxeon's own: {text}",
     "different_in_osl": "{0} is different in OSL",
-    "other_node": "nearest to it is {0} {1!r}, whose values are not the reference's",
+    "other_node": "the nearest node is {0} {1!r}, whose values are not the reference's",
     "never_passed": "{0} is never passed",
     "not_passed": "{0} is not passed",
     "float_for_vector": "{0} is a float but receives a color or vector",
-    "tint_is_not_eon": "{0} is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)){instead}: off by up to {x:.2g}",
-    "tint_is_not_qon": "{0} is not black, as without energy_compensation{instead}: off by up to {x:.2g}",
-    "is_not_the_node_s": "{0} is not the node's {0}{instead}: off by up to {x:.2g}",
-    "white_lobe": "FON + white lobe, as MDL's module pbrlib_1_10 defines this node; read, not run",
-    "not_defined": "{0} is not defined as eonlib has it",
-    "function_off": "{0} is off by {x:.2g}",
-    "functions_that_use_it": "with it {all}",
-    "cannot_be_told_from": "cannot be told from {any}",
+    "tint_is_not_eon": "{0} is not that of EON, rho^2 <E> / (1 - rho (1 - <E>)){instead}: error up to {x:.2g}",
+    "tint_is_not_qon": "{0} is not black, as without energy_compensation{instead}: error up to {x:.2g}",
+    "is_not_the_node_s": "{0} is not the node's {0}{instead}: error up to {x:.2g}",
+    "white_lobe": "FON + white lobe, from the source of MDL's module pbrlib_1_10, which was not run",
+    "not_defined": "{0} is not defined as in eonlib",
+    "function_off": "{0} has an error of {x:.2g}",
+    "functions_that_use_it": "also wrong because of it: {all}",
+    "cannot_be_told_from": "cannot be distinguished from {any}",
     "neither_fits": "neither fits",
     "picture_black": "{0} is black",
     "picture_clipped": "{0} is clipped",
@@ -272,11 +272,11 @@ DEFECTS = {
     "picture_rotated": "{0} is rotated by 180 degrees{also}",
     "unknown": "the cause is unknown",
     "no_model": "it matches no known mistake",
-    "no_input": "no input alone is at fault",
+    "no_input": "no single input is at fault",
     "singly_right": "each value on its own is within tolerance",
     "other_average": "the compensation uses a different average of the film's reflectance",
     "unmasked": "the visible facets are not weighted by masking and shadowing",
-    "picture_unknown": "{0} is not Lambert's cosine in any known encoding: tone-mapped, or lit otherwise",
+    "picture_unknown": "{0} is not Lambert's cosine in any known encoding: tone-mapped, or lit differently",
 }
 # fmt: on
 FACTORS = {"pi": math.pi, "1/pi": 1.0 / math.pi, "pi^2": math.pi**2, "2": 2.0, "1/2": 0.5}
@@ -301,7 +301,7 @@ def region(place: Region) -> str:
     else:
         digits = 2 if _short(low) != _short(high) else 4  # enough digits to distinguish both ends
         ends = f"between {_short(low, digits)} and {_short(high, digits)}"
-    channels = f", in {' and '.join(place.channels)} alone" if place.channels else ""
+    channels = f", only in {' and '.join(place.channels)}" if place.channels else ""
     return f"with {PARTS[place.part].format(place.name)} {ends}{channels}"
 
 
@@ -369,9 +369,9 @@ def _not_finite(cause: Cause) -> str:
 
 def _cure(cause: Cause) -> str:
     if cause.key == "beside_equal_pixels":
-        return "the worst are right beside pixels with the same inputs"
+        return "the worst values are right next to pixels with equal inputs"
     pairs = (f"{name} {x:g}" for name, x in zip(cause.names, cause.values, strict=True))
-    return f"the worst are right with {' or '.join(pairs)}"
+    return f"the worst values are right with {' or '.join(pairs)}"
 
 
 def _filled(text: str, cause: Cause) -> str:
@@ -417,7 +417,7 @@ def _release(cause: Cause) -> str:
     if len(parts) > DIFFERENCES_SHOWN:
         text += f", and {len(parts) - DIFFERENCES_SHOWN} more differences"
     if rows and cause.values and math.isfinite(cause.values[0]):
-        text += f", off by up to {in_words(cause.values[0])}"
+        text += f", with an error up to {in_words(cause.values[0])}"
     if cause.of and cause.of > 1:
         text += f", and {cause.of - 1} more with this text"
     return text
@@ -533,7 +533,7 @@ GROWTHS = {
 }
 LOST_PAGE, FOUND_PAGE = "{} no longer explains it", "{} explains it"
 UNEXPLAINED = "the specification no longer allows it"
-ROUNDED = "with another driver, few samples leave the tolerance"
+ROUNDED = "with another driver, few samples exceed the tolerance"
 
 
 def growth(key: str, before: float, after: float, place: Region | None) -> str:

@@ -177,7 +177,7 @@ def _entries(report: Report, folder: Path) -> Iterator[Entry]:
             if BACK in portraits and direct.tolerance is not None:
                 error, allowed = portraits[BACK].difference, direct.tolerance
                 verdict: Verdict = PASSED if error <= allowed else FAILED
-                check = PORTRAIT, "Light from behind, at the points of a sphere."
+                check = PORTRAIT, "The picture in light from behind matches the model."
                 node = direct.subject, direct.host, direct.library
                 cells[BACK] = Result(*check, *node, verdict, error, direct.quantity, allowed)
             pages = tuple(dict.fromkeys(page for each in results.values() for page in each.pages))

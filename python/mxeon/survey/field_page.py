@@ -27,7 +27,7 @@ HEADINGS = {
     "energy": ("White furnace", "what a white surface loses or gains"),
     "color": ("Color", "error of the albedo at mixed reflectance"),
     "black": ("Black", "what a black surface scatters"),
-    "back": ("Back-lit", "worst error of the portrait in light from behind"),
+    "back": ("Back-lit", "worst error of the pictures in light from behind"),
 }
 SCENES = {"side": "light from the side", "back": "light from behind"}
 # Row number, entry, image, difference map, scale of the difference map, and largest difference.
