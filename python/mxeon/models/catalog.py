@@ -71,7 +71,7 @@ GGX = ModelSampler(
 )
 SPHERE = ModelSampler(_sphere_sample, _sphere_pdf, side=None)
 FACETS = ("dielectric", "conductor", "schlick")
-# Sampler of each model that this dictionary names; every other model is sampled by COSINE.
+# Samplers by name of the model. All other models are sampled by COSINE.
 SAMPLERS = {
     "translucent": BACK,
     "hair": SPHERE,
@@ -195,8 +195,8 @@ def _coated_model(name: str, title: str) -> ShadingModel:
 
 
 def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
-    """Result of a function of `mxeon.models.coat`; one call for each pair of alpha and ior."""
-    # With another array library, the only call raises an error for several pairs of alpha and ior.
+    """Result of a function of `mxeon.models.coat`, called once for each pair of alpha and ior."""
+    # With arrays of other libraries, several pairs of alpha and ior raise an error.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))

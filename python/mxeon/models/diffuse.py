@@ -2,8 +2,8 @@
 """Diffuse models: Lambert, the Oren-Nayar family, Burley's model and diffuse transmission.
 
 BRDFs are reciprocal, in 1/sr and without the cosine. All functions broadcast and accept the ends of
-every range. They evaluate in blocks on the caller's thread, so memory for temporaries does not grow
-with the size of the arguments. If both directions graze the surface and s > 0,
+every range. Arrays are processed in blocks on the caller's thread, so memory for temporaries does
+not grow with the size of the arguments. If both directions graze the surface and s > 0,
 s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 in this case.
 
 - `wo`, `wi` (..., 3): Directions that leave the surface, unit vectors to 1e-6, normal +z, z >= 0.
@@ -183,9 +183,9 @@ def oren_nayar_angle(y: Array, x: Array) -> Array:
 def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) -> Array:
     """(sin(alpha) - (2 beta / pi)^3) / cos(beta); the limit 6 / pi if both directions graze.
 
-    (2 beta / pi)^3 is 1 - q (3 - 3 q + q^2), where q = 1 - 2 beta / pi, and sin(alpha) is
-    1 - cos(alpha)^2 / (1 + sin(alpha)). The ones cancel in the difference, so they are omitted, and
-    no digits are lost.
+    (2 beta / pi)^3 is 1 - q (3 - 3 q + q^2), where q = 1 - 2 beta / pi, and
+    sin(alpha) is 1 - cos(alpha)^2 / (1 + sin(alpha)). In the difference, 1 - 1 is omitted,
+    so that no digits are lost.
     """
     xp = array_namespace(mu_o, mu_i, S_o, S_i)
     high, low = xp.maximum(mu_o, mu_i), xp.minimum(mu_o, mu_i)
@@ -212,7 +212,7 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     # The term C2 cos(phi) tan(beta), where sin(beta) cos(phi) is computed as s / sin(alpha).
     behind = oren_nayar_quotient(xp.minimum(s, 0.0), xp.maximum(S_o, S_i))
     behind = behind * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i)
-    # The term with C3, where 1 - cos(phi)^2 is computed as (cross / (S_o S_i))^2.
+    # In the term with C3, 1 - cos(phi)^2 is computed as (cross / (S_o S_i))^2.
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)

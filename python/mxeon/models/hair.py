@@ -128,8 +128,8 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
     """Angles of section Hair Fiber Geometry for a view, and the effective index of refraction.
 
     The specification lets the renderer choose the offset h = sin(gamma_o). As in MaterialX's
-    shaders, h is that of the point with normal +z. For a view along the fiber, h is 0. If `ior` is
-    below 1 and no light enters the fiber, F is 1 and gamma_t has no effect.
+    shaders, h is the offset of the point with normal +z. For a view along the fiber, h is 0. If
+    `ior` is below 1 and no light enters the fiber, F is 1 and gamma_t has no effect.
     """
     xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, arrays.least_normal(wo))
     sin_o, cos_o = wo[0], arrays.hypot(wo[1], wo[2])

@@ -103,7 +103,7 @@ def cone_cosine(angle: Array) -> Array:
 
 
 def cone_width(inner: Array, outer: Array) -> Array:
-    """Difference c_in - c_out of the cosines of half angles, as a product that does not cancel."""
+    """Difference c_in - c_out of the cosines of half angles, as a product to avoid cancellation."""
     half = 0.5 * HALF_TURN
     sin = array_namespace(inner, outer).sin
     return 2.0 * sin(half * (outer + inner)) * sin(half * (outer - inner))
@@ -112,7 +112,7 @@ def cone_width(inner: Array, outer: Array) -> Array:
 def _checked(
     wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[Array, list[Array], list[Array]]:
-    """Cosine of wo's polar angle, in [-1, 1], and validated colors and numbers; all broadcast."""
+    """Cosine of wo's polar angle, in [-1, 1], and validated colors and numbers, which broadcast."""
     directions = arguments.checked_sphere("wo", wo)
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))
@@ -158,7 +158,7 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
     lead_shape({"wo": views, "wi": lights}, {"g": mean})
     xp = array_namespace(views, lights, mean)
     side = xp.where(mean < 0.0, -1.0, 1.0)[..., np.newaxis]
-    difference = 1.0 * views + side * lights  # 0 for the most likely wi
+    difference = 1.0 * views + side * lights
     return _phase(0.5 * xp.sum(difference**2, axis=-1), mean)[()]
 
 
@@ -188,9 +188,9 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     return covered * (emitted + light)
 
 
-# Nodes per panel, and number of panels. There are many panels because the integrand has a kink.
+# Nodes per panel, and number of panels, which is large because the integrand has a kink.
 BLUR_NODES, PANELS = 50, 40
-FAR = 3.0  # length of the profile's second exponential, divided by the length of the first
+FAR = 3.0  # ratio of the lengths of the profile's exponentials
 
 
 @any_array
@@ -218,7 +218,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
 
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
-    """`diffusion_blur` for valid arrays; `far` is the ratio of the lengths of both exponentials."""
+    """`diffusion_blur` for valid arrays, where `far` is FAR in the specification's profile."""
     reach = reach[..., np.newaxis]
     (first, share_1), (second, share_2) = (_exponential(mu, each) for each in (reach, far * reach))
     total = 0.25 * share_1 + 0.75 * share_2
@@ -226,12 +226,12 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Cosine blurred by an exponential of chords up to 2, and the exponential's share up to 2."""
+    """Cosine blurred by exponentially distributed chords up to 2, and the chords' probability."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
-    # Compute the mean of max(cos(theta), 0) over the circle of points at each distance.
+    # `circle` is the mean of max(cos(theta), 0) over all points at a distance.
     mu, squared = mu[..., np.newaxis], distance * distance
     along = mu * (1.0 - 0.5 * squared)
     across = arrays.root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))
@@ -242,7 +242,7 @@ def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
 
 # Second radiation constant h c / k_B in m K, exact in the SI of 2019.
 SECOND = 6.62607015e-34 * 299792458.0 / 1.380649e-23
-NANOMETER = 1e-9  # one nanometer in meters
+NANOMETER = 1e-9  # m
 LUMINANCE = np.linalg.inv(XYZ_TO_REC709)[1]  # weights of the linear Rec. 709 channels in Y
 
 # Cubic polynomials for the chromaticity of a black body from 1667 K to 25000 K; the highest power
@@ -304,8 +304,8 @@ def kang_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body with Y = 1, approximated by cubic polynomials.
 
     From 1667 K to 25000 K, the errors of x and y are below 6e-4. MaterialX's GLSL also uses the
-    polynomials below 1667 K, where they are wrong; the color at 800 K is paler than at 1667 K.
-    [Kang2002].
+    polynomials below 1667 K, where the polynomials are wrong: the color is paler at 800 K than at
+    1667 K. [Kang2002].
     """
     (kelvin,) = checked_numbers(temperature=temperature)
     warm, hot = (np.polyval(fit, 1000.0 / kelvin) for fit in KANG_X)

@@ -133,7 +133,7 @@ def unpack_uniforms(u: ArrayLike) -> tuple[Array, Array]:
 
 
 def uniform_direction(u1: Array, rest: Array, u2: Array) -> Array:
-    """Direction of `uniform_sample`; `rest` is 1 - u1 without a loss of digits."""
+    """Direction of `uniform_sample`, where `rest` is 1 - u1."""
     return around(u1, root(rest * (1.0 + u1)), u2)
 
 
@@ -254,7 +254,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     ends = [end / ends[-1] for end in ends]
     starts = [0.0 * ends[0], *ends[:-1]]
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
-    # `rest` is 1 - v[3] for the flat part, without cancellation.
+    # `rest` is 1 - v[3], computed without cancellation.
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])
     # Sample one cosine from each of lower, upper and multiple; keep the chosen part's cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
@@ -339,7 +339,7 @@ def eon_upper_cosine(y: Array, mu_o: Array, y_o: Array) -> Array:
 
 
 def eon_multiple_cosine(t: Array) -> Array:
-    """Cosine with a density near H(mu) mu, up to a factor, from t = v^(1/3) for a uniform v."""
+    """Cosine with a density nearly proportional to H(mu) mu, from t = v^(1/3) for a uniform v."""
     a, b, c, d, e, f = MULTIPLE
     m = 1.0 - t
     w = root(m)
@@ -375,8 +375,8 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     """Direction sampled from the transformed cosine, possibly below the horizon, and its density.
 
     `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
-    1/sr. The probability of a wasted sample, (1 - 1/sqrt(1 + d^2))/2, is largest for roughness 1
-    and a grazing view, 0.0534. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
+    1/sr. The probability of a wasted sample, (1 - 1/sqrt(1 + d^2))/2, is at most 0.0534, at
+    roughness 1 and for a grazing view. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
 
         >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
         >>> float(wi[2]) < 0.0
@@ -388,7 +388,7 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ltc_sample` at a `wi` above the horizon.
+    """Density of `ltc_sample` at `wi`, which must be above the horizon.
 
     The integral of the density is the probability that a sample is not wasted. [Portsmouth2025],
     Eqs. (23), (24).
@@ -433,7 +433,7 @@ def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[A
 
 
 def _normalized(wo: Array, w: Array, pdf: Array) -> tuple[Array, Array]:
-    """Direction of w, rotated from the frame in which wo has azimuth 0, and pdf |w|^3."""
+    """Direction of w in the frame of wo, and the density pdf |w|^3."""
     length = root(array_namespace(w).sum(w * w, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
     return rotate_z(w / length[..., np.newaxis], cosine, sine), pdf * length**3
@@ -456,11 +456,11 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
     """Direction sampled from the clipped transformed cosine, and its density.
 
-    As a sampler of EON, CLTC is biased: `wh` is also clipped at its own horizon, so some directions
-    into which EON reflects are never sampled. The lune d x + z < 0 lies at x > 0 for d < 0, which
-    Listing 3 assumes, and at x < 0 for d > 0. The approximation of d is positive for
-    mu_o > 0.99991, where Listing 3 keeps the wrong side. This function always keeps the right side.
-    [Portsmouth2025], Eqs. (26) and (27), Listing 3.
+    As a sampler of EON, CLTC is biased, because some directions into which EON reflects are never
+    sampled. The lune d x + z < 0 lies at x > 0 for d < 0, which Listing 3 assumes, and at x < 0 for
+    d > 0. The approximation of d is positive for mu_o > 0.99991, where Listing 3 keeps the wrong
+    side. This function always keeps the correct side. [Portsmouth2025], Eqs. (26) and (27), Listing
+    3.
 
         >>> wi, pdf = cltc_sample([0.6, 0.0, 0.8], [0.25, 0.5], 1.0)
         >>> bool(np.isclose(pdf, cltc_pdf([0.6, 0.0, 0.8], wi, 1.0), rtol=1e-14))
@@ -503,7 +503,7 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     u1, u2 = unpack_uniforms(u)
     P_u = eon_cltc_probability(wo[..., 2], roughness)
     is_uniform = u1 < P_u
-    # The part of [0, 1) that contains u1, below or above P_u, is mapped to [0, 1).
+    # u1 is rescaled from [0, P_u) or [P_u, 1) to [0, 1).
     xp = array_namespace(u1, P_u)
     length = xp.where(is_uniform, P_u, 1.0 - P_u)
     v = xp.where(is_uniform, u1, u1 - P_u) / length
@@ -526,7 +526,6 @@ def eon_cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
     return P_u * (0.5 / np.pi) + (1.0 - P_u) * cltc_pdf(wo, wi, roughness)
 
 
-# The paper does not state how accurate this probability is.
 def eon_cltc_probability(mu: Array, roughness: Array) -> Array:
     """Probability P_u of the uniform lobe: [Portsmouth2025], Listing 4."""
     P_u = 0.162925 + (-0.372058 + (0.538233 - 0.290822 * mu) * mu) * mu

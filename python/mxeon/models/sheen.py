@@ -70,9 +70,9 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
 
     f is not reciprocal. E is `zeltner_albedo_dir`. The specification's equation is for f times the
     cosine, so the cosine of D_o is omitted. M is defined in the frame in which wo has azimuth 0. If
-    wo is the normal, the azimuth of the frame has no effect, because b is 0. The accuracy is that
-    of `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], where wo is called
-    omega_i.
+    wo is the normal, the azimuth of the frame has no effect, because b is 0. The accuracy equals
+    the accuracy of `conty_kulla_brdf`. [MaterialX2026], Zeltner Sheen Model; [Zeltner2022], where
+    wo is called omega_i.
 
         >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.002916, 0.011662])
@@ -106,7 +106,7 @@ def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
-    """BRDF of `conty_kulla_brdf`, (C, ...), for valid arrays."""
+    """`conty_kulla_brdf` for valid arrays, (C, ...)."""
     xp = array_namespace(wo, wi, roughness)
     # In float32, LEAST_DIVISOR is 0, so the smallest normal number is the limit.
     least = max(LEAST_DIVISOR, arrays.least_normal(wo))
@@ -115,7 +115,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     upright = xp.square(mu_o + mu_i)
     total = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
-    # Other libraries skip elements whose limit is 0. NumPy evaluates exp(-inf) = 0 for flat = 0.
+    # If `flat` is 0, the result is 0: by exp(-inf) in NumPy, by `where` in other libraries.
     counted = (roughness > 0.0) & (divisor >= least)
     smooth = counted & (flat > 0.0)
     roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
@@ -134,13 +134,13 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
 
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
-    """BRDF of `zeltner_brdf`, (C, ...), for valid arrays."""
+    """`zeltner_brdf` for valid arrays, (C, ...)."""
     albedo = _zeltner_albedo(cosines(wo, wi)[0], roughness)
     return tint * (albedo * zeltner_lobe(wo, wi, roughness) / np.pi)
 
 
 def zeltner_lobe(wo: Array, wi: Array, roughness: Array) -> Array:
-    """a^2 / |M^-1 wi|^4, which is pi times the density of sampled directions, divided by mu_i."""
+    """a^2 / |M^-1 wi|^4, which is pi pdf / mu_i for the density pdf of sampled directions."""
     # Rotate the light into the frame in which wo has azimuth 0.
     xp = array_namespace(wo, wi, roughness)
     mu_o, mu_i, s = cosines(wo, wi)
@@ -164,8 +164,8 @@ def _zeltner_albedo(mu: Array, roughness: Array) -> Array:
     return albedo
 
 
-# Largest cosine for which the closed form of the integral over phi is used. For larger cosines, the
-# closed form would cancel, and Gauss-Legendre quadrature replaces it.
+# Largest cosine for which the integral over phi is computed in closed form. For larger cosines,
+# Gauss-Legendre quadrature is used, because the closed form would cancel.
 STEEP = 0.25
 
 SHEEN_BLOCK = 2**8  # elements per block
@@ -226,7 +226,7 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
     ):
         # At latitudes above 10 sqrt(roughness), the density is below exp(-50) times the maximum.
         width = xp.minimum(span, 10.0 * xp.sqrt(roughness))
-        # Distances of the latitude from the interval's lower end, `above`, and upper end, `below`.
+        # `above` is the distance from the lower end of the interval, `below` from the upper end.
         above = width[..., np.newaxis] * x
         below = width[..., np.newaxis] * (1.0 - x if xp is not arrays.NUMPY else x[::-1])
         below = below + (span - width)[..., np.newaxis]
@@ -262,7 +262,7 @@ def _azimuths(
 
 
 def _azimuths_gauss(mu: Array, c: Array, a: Array, b: Array, phi: Array) -> Array:
-    """The integral in `_azimuths` by Gauss-Legendre, for mu_i + mu_o - mu_i mu_o >= STEEP."""
+    """The integral over phi by Gauss-Legendre quadrature, for mu_i + mu_o - mu_i mu_o >= STEEP."""
     cos, total = array_namespace(phi).cos, 0.0 * a
     for x, weight in zip(*np.polynomial.legendre.leggauss(24), strict=True):
         w = a + b * cos(0.5 * phi * (1.0 + float(x)))
@@ -274,7 +274,7 @@ def _azimuths_gauss(mu: Array, c: Array, a: Array, b: Array, phi: Array) -> Arra
 def _azimuths_closed(
     mu: Array, c: Array, a: Array, b: Array, phi: Array, rise: Array, fall: Array
 ) -> Array:
-    """The integral in `_azimuths` in closed form.
+    """The integral over phi in closed form.
 
     With m = mu_o, c = sin(l) and k = 2 c (1 - m), the integrand is
 

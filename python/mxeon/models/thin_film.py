@@ -62,7 +62,7 @@ GAUSSIANS = (
 )
 NORMAL = 1.0685e-7
 METERS = 1e-9  # converts nm to m
-# Centers, standard deviations and areas of the Gaussians, and their weights in X, Y and Z, (3, 4).
+# Centers, standard deviations and areas of the Gaussians, and a (3, 4) matrix that sums X, Y and Z.
 CENTERS = np.array([mu for _, _, mu, _ in GAUSSIANS])
 SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
 AREAS = [v * np.sqrt(2.0 * np.pi * variance) / NORMAL for _, v, _, variance in GAUSSIANS]
@@ -76,7 +76,7 @@ WEIGHTS = np.eye(3)[:, [row for row, *_ in GAUSSIANS]] * AREAS
 THIN_SPREAD, DAMPED_ORDERS = 0.2, 30
 STEP, STEPS = 0.2, 32
 SAME = 2.0**-20  # indices of refraction with a smaller relative difference count as equal
-# Weights of the trapezoidal rule, from the center to one end. HEIGHT is the sum over both sides.
+# Weights of the symmetric trapezoidal rule from the center to one end, and the sum of all weights.
 HEIGHTS = STEP * np.exp(-0.5 * (STEP * np.arange(STEPS + 1)) ** 2) / np.sqrt(2.0 * np.pi)
 HEIGHT = 2.0 * float(HEIGHTS.sum()) - float(HEIGHTS[0])
 FILM_BLOCK = 2**13  # elements per block
@@ -99,7 +99,7 @@ def refracted(mu: Array, film_ior: Array) -> Array:
 
 
 def path_difference(mu: Array, thickness: Array, film_ior: Array) -> Array:
-    """Optical path difference in meters, by section Optical Path Difference."""
+    """Optical path difference 2 thinfilm_ior cos(theta_t) thickness, in meters."""
     return 2.0 * film_ior * refracted(mu, film_ior) * thickness * METERS
 
 
@@ -140,9 +140,9 @@ def over_schlick(
     - `F`: Schlick curve of the substrate at cos theta_t.
 
     The dip of the Schlick curve can make F negative. A negative F has no amplitude and counts as 0.
-    The phase jumps by pi where film and substrate have the same index of refraction. Indices with a
-    relative difference below SAME count as equal, because colors may be rounded. For example,
-    float32 changes 0.04, the color0 for index 1.5, by a relative error of 2e-8.
+    The phase jumps by pi where film and substrate have the same index of refraction. Indices of
+    refraction with a relative difference below SAME count as equal, because colors may be rounded.
+    For example, float32 changes 0.04, the color0 for index 1.5, by a relative error of 2e-8.
     """
     xp = array_namespace(mu, film_ior, F)
     F = arrays.at_least_0(F)
@@ -159,7 +159,7 @@ def index_of(color0: Array) -> Array:
 
 
 def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
-    """The amplitudes r12 for p and s, computed like the amplitudes in `over_index`.
+    """The amplitudes r12 for the polarizations p and s, computed as in `over_index`.
 
     The sign of r12 determines the phase phi_12, which is 0 or pi.
     """
@@ -197,7 +197,7 @@ def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> 
 
 
 def _fill(sums: Array, x: Array, y: Array, phi: Array, orders: int | None) -> None:
-    """Compute `sums` of a block, by sums of orders for thick films and integrals for thin films."""
+    """Fill `sums` for a block, by `_orders` for thick films and by `_integrated` for thin films."""
     thick = phi * SPREADS.min() >= THIN_SPREAD if orders is None else np.full(len(phi), True)
     if thick.all():
         sums[:] = _orders(x, y, phi, orders or DAMPED_ORDERS)
@@ -257,7 +257,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
     kernel = float(HEIGHTS[0]) / _distance(real, imaginary)
     c, s = turn_c, turn_s
     for height in HEIGHTS[1:].tolist():
-        # Add the two nodes at this distance from the center, then continue with a larger distance.
+        # Each step adds the two nodes at equal distances from the center.
         a, b, d, e = real * c, imaginary * s, imaginary * c, real * s
         kernel += height / _distance(a - b, d + e)
         kernel += height / _distance(a + b, d - e)
@@ -266,7 +266,7 @@ def _integrated(x: Array, y: Array, phi: Array) -> Array:
 
 
 def _distance(real: Array, imaginary: Array) -> Array:
-    """|1 - w|^2 as a divisor. Where |1 - w|^2 is 0, the result is 1, because no light passes."""
+    """|1 - w|^2 as a divisor, or 1 where |1 - w|^2 is 0 because no light passes the film."""
     size = (1.0 - real) ** 2 + imaginary * imaginary
     return array_namespace(size).where(size > 0.0, size, 1.0)
 
@@ -288,8 +288,8 @@ def _quotient(a: Complex, b: Complex, otherwise: float) -> Complex:
     return xp.where(valid, real, otherwise), imaginary
 
 
-# Numbers of Gauss-Legendre nodes in the cosine. F is evaluated at POINTS nodes. The polynomial
-# through these values is clamped and integrated at FINE nodes.
+# F is evaluated at POINTS Gauss-Legendre nodes in the cosine. The polynomial through these values
+# is clamped and integrated at FINE nodes.
 POINTS, FINE = 14, 200
 
 Polarizations: TypeAlias = tuple[Interface, Interface]
@@ -297,7 +297,7 @@ Polarizations: TypeAlias = tuple[Interface, Interface]
 
 @dataclass(frozen=True)
 class Form:
-    """Choices that the specification leaves to implementations. `share` can model a known error.
+    """Choices that the specification leaves to implementations.
 
     - `matrix`: Rows of the matrix from CIE XYZ to linear RGB.
     - `orders`: Number M of orders; None sums all orders.
@@ -305,7 +305,7 @@ class Form:
       respectively. If False, X, Y and Z are computed for each channel of the substrate, so that a
       film of thickness near 0 does not mix the channels.
     - `share`: Factor of the reflectance of a Schlick substrate; 1 in the specification.
-    - `least`: Smallest color0 that is converted to the index of refraction of a Schlick substrate.
+    - `least`: Lower limit of color0 in the conversion to an index of refraction.
     - `clamped`: Whether values are clamped to [0, 1], as in the specification.
     """
 
@@ -377,7 +377,7 @@ def _film_average(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of POINTS nodes, the matrix that interpolates to FINE nodes, and the FINE weights."""
+    """Cosines of POINTS nodes, the matrix that interpolates at FINE nodes, and the fine weights."""
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)
@@ -448,9 +448,9 @@ def film_reflectance(
 ) -> Array:
     """Fresnel reflectance of a node under a thin film for unpolarized light, without the tint.
 
-    Accuracy: the error of the infinite sum is below 1e-6 over a dielectric for cosines above 0.01,
-    and below 1e-4 over a conductor at grazing angles, where many orders contribute. A film with an
-    index of refraction below 1 is rejected. For the s polarization, the specification sets the
+    Accuracy: on dielectrics, the error of the infinite sum is below 1e-6 for cosines above 0.01. On
+    conductors at grazing angles, where many orders contribute, the error is below 1e-4. A film with
+    an index of refraction below 1 is rejected. For the s polarization, the specification sets the
     phase of the upper interface to pi, which requires a film that is denser than the vacuum. The
     Schlick curve describes the lower interface of the film at the refracted angle, so the result
     jumps between thickness 0 and any positive thickness. A negative value of the Schlick curve has
@@ -482,7 +482,7 @@ def film_brdf(
 ) -> Array:
     """BRDF of a microfacet node under a thin film, scatter mode R, in 1/sr.
 
-    - `lobe`: Terms of the microfacet BRDF, if they are not those of the specification.
+    - `lobe`: Terms of the microfacet BRDF; None for the terms of the specification.
 
     [MaterialX2026], sections Thin-Film Iridescence and Energy Compensation.
 

@@ -119,10 +119,10 @@ def dielectric_btdf(
         f = tint |wo . wh| |wi . wh| (1 - F) D G2 / (mu_o |mu_i| (wo . wh + ior wi . wh)^2)
 
     With `ior` 0, which disables the Fresnel curve of the node, F is 1, and nothing is transmitted.
-    As in [Walter2007], f is 0 unless wo and wi lie on different sides of the microfacet. The
-    specification omits this condition, without which f would be positive for pairs of directions
-    that no facet connects. [MaterialX2026], sections Microfacet BTDF and dielectric_bsdf;
-    [Walter2007], Eq. (21).
+    As in [Walter2007], f is 0 unless wo and wi lie on different sides of the microfacet. Without
+    this condition, which the specification omits, f would be positive for pairs of directions that
+    no facet connects. [MaterialX2026], sections Microfacet BTDF and dielectric_bsdf; [Walter2007],
+    Eq. (21).
 
         >>> wo = [0.6, 0.0, 0.8]
         >>> wi = refraction_direction(wo, [0.0, 0.0, 1.0], 1.5)
@@ -168,7 +168,7 @@ def evaluate_btdf(
     )
 
 
-CAP_NODES = 48  # nodes in height and nodes in azimuth on the spherical cap of visible normals
+CAP_NODES = 48  # number of heights, and number of azimuths, on the spherical cap of visible normals
 CAP_BLOCK = 2**4  # views per block
 # Largest 1 - ior^2 in the quadrature; if `ior` is below 3e-8, almost no light is transmitted.
 MOST_SQUARED = 1.0 - 1e-15
@@ -250,7 +250,7 @@ def evaluate_transmittance(
 
 
 def _visible(wo: Array, roughness: Array, ior: Array) -> Nodes:
-    """Quadrature nodes over visible facets; a facet that transmits no light has weight 0."""
+    """Quadrature nodes over visible facets. Facets that transmit no light have weight 0."""
     height, turn, weight = (arrays.like(each, wo) for each in _nodes(wo.ndim))
     xp, view = array_namespace(wo), wo[:, np.newaxis]
     wh = visible_normal(view, height, turn, roughness[:, np.newaxis])
@@ -288,8 +288,8 @@ def reversed_transmittance(
         p(wo, wi) = G1(wo) D |wo . wh| / mu_o |d wh / d wi|
 
     Hence T(wi, wo) = P(wo) G1(wo) / G1(wi) p(wi, wo), and the fraction transmitted from the denser
-    side is the mean of P G1(wo) / G1(wi) over the facets visible from wi. n^2 times the
-    cosine-weighted average of this fraction is the average of P.
+    side is the mean of P G1(wo) / G1(wi) over the facets visible from wi. The cosine-weighted
+    average of this fraction, multiplied by n^2, is the average of P.
 
     - `mu` (N,): Cosines of views on the denser side.
     - `ior`: Index of refraction of the far side relative to the view's side, below 1.
@@ -308,8 +308,8 @@ def reversed_transmittance(
     return np.stack([np.sum(weight * row, axis=axes) for row in rows], axis=-1)
 
 
-# MaterialX clamps the reflectance along the normal to this range, then converts it to an index of
-# refraction.
+# MaterialX converts the reflectance along the normal to an index of refraction after a clamp to
+# [DARKEST, BRIGHTEST].
 DARKEST, BRIGHTEST = 0.01, 0.99
 
 
@@ -324,7 +324,7 @@ class Reading:
     title: str
     curve: Callable[..., Array]  # F for transmission, as a function of the cosine outside the solid
     index: str = "average"
-    least: float = DARKEST  # smallest reflectance that is converted to an index of refraction
+    least: float = DARKEST  # lower limit of the reflectance along the normal
 
     def at(self, cosine: Array, ior: Array, **inputs: Array) -> Array:
         """F for the cosine wo . wh, or 1 if light is totally reflected.
@@ -372,10 +372,10 @@ def schlick_ior(color0: ArrayLike, reading: str = "text") -> Array:
 
         ior = (1 + sqrt(r)) / (1 - sqrt(r)),  r in [0.01, 0.99]
 
-    Result (..., C) or (..., 1): one index per channel, or one index for all channels, depending on
-    the reading. The limits of r are from stock MaterialX. They keep the index in [1.22, 399], so
-    light is refracted even if the reflectance is 0. [MaterialX2026], sections Generalized Schlick
-    Equations and Thin-Film Iridescence.
+    Result (..., C) or (..., 1): one index of refraction per channel, or one for all channels,
+    depending on the reading. The limits of r are from stock MaterialX, and keep the index of
+    refraction in [1.22, 399], so light is refracted even if the reflectance is 0. [MaterialX2026],
+    sections Generalized Schlick Equations and Thin-Film Iridescence.
 
         >>> schlick_ior([0.04, 0.25]).round(4), schlick_ior([0.04, 0.25], "channel").round(4)
         (array([2.2299]), array([1.5, 3. ]))
@@ -475,9 +475,9 @@ def _by_index(
     reading: str,
     inside: bool,
 ) -> Array:
-    """Result of `evaluate(F, index, colors, numbers)`, from one call or from one call per channel.
+    """Result of `evaluate(F, index, colors, numbers)`.
 
-    `evaluate` is called for each channel if each channel has its own index of refraction.
+    If channels have different indices of refraction, `evaluate` is called for each channel.
     """
     how = READINGS[arguments.checked_choice("reading", reading, READINGS)]
     arguments.checked_switch("inside", inside)

@@ -23,7 +23,7 @@ from mxeon.names import NONE, unknown
 
 _LARGEST = float(np.finfo(np.float64).max)
 
-# Each range has a minimum, a maximum and its text in messages. Both ends are valid values.
+# Each range has a minimum, a maximum, and a text for messages. Both ends are valid values.
 _BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
 _SHARE = (0.0, 1.0, "[0, 1]")
 _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
@@ -138,7 +138,7 @@ def channel_count(colors: Mapping[str, Numbers]) -> int:
 
 
 def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
-    """Indices that divide an array into blocks of at most about `size` elements."""
+    """Slices that divide an array into blocks of about `size` elements at most."""
     # The elements of all axes from `axis` to the last fit into one block.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:
@@ -155,7 +155,7 @@ def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, .
 
 
 def tile(array: Numbers, block: tuple[slice, ...]) -> Array:
-    """A block of an array, whose last axis is moved to the front. Axes of length 1 are kept."""
+    """A block of an array, with the last axis moved to the front. Axes of length 1 are kept."""
     axes = zip(block, array.shape[:-1], strict=True)
     part = array[tuple(index if length > 1 else slice(None) for index, length in axes)]
     return channels_first(part)

@@ -7,7 +7,7 @@ library, precision and device. Traced arguments are not checked, because a trace
 values.
 
 Automatic differentiation multiplies the derivatives of all steps, so a square root at 0 may lead to
-infinity times 0. The function `cosine` and the functions after it avoid such products. For NumPy,
+infinity times 0. The functions from `cosine` to the end of the file avoid such products. For NumPy,
 these functions equal the plain operations to the last bit. For other libraries, a separate branch
 returns the value at the end of the domain, with the derivative that the docstring states.
 """
@@ -29,7 +29,7 @@ __all__ = ["Array", "ArrayLike", "Number", "Numbers"]
 # Results are float64. If all arguments are numbers, the result is a NumPy scalar, which acts like an array.
 Array: TypeAlias = NDArray[np.float64]
 
-# An array or a number. The result of a function has the type of its argument.
+# An array or a number. Results have the type of the argument.
 Number = TypeVar("Number", Array, float)
 
 # Validated arguments, in the precision of the caller's arrays.
@@ -41,15 +41,15 @@ R = TypeVar("R")
 
 
 class Namespace(Protocol):
-    """Functions of the array API standard."""
+    """The functions of the array API standard in one library."""
 
     def __getattr__(self, name: str) -> Callable[..., Array]: ...
 
 
-PLAIN = np.ndarray, np.generic, float, int, list, tuple  # types that NumPy handles
-# NumPy 1 lacks some names of the standard, such as `atan`.
+PLAIN = np.ndarray, np.generic, float, int, list, tuple
+# NumPy 1 lacks some names of the array API standard, such as `atan`.
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
-# Two tables by a library's name: array types that lack the standard, and namespaces in use.
+# By library name: array types without the standard's methods, and namespaces of functions.
 OTHERS: dict[str, type] = {}
 FUNCTIONS: dict[str, Namespace] = {}
 
@@ -135,7 +135,7 @@ def _converter(foreign: Sequence[object]) -> Callable[[object], object]:
             return array if xp.isdtype(array.dtype, "real floating") else xp.astype(array, dtype)
         if isinstance(value, bool) or not isinstance(value, PLAIN):
             return value
-        if isinstance(value, float | int):  # compilers get a constant
+        if isinstance(value, float | int):  # numbers become constants in compiled code
             return xp.asarray(value, dtype=dtype, **place)
         array = np.asarray(value)
         return xp.asarray(array, dtype=dtype, **place) if array.dtype.kind in "iuf" else value

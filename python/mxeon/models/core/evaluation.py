@@ -105,7 +105,7 @@ def evaluate_number(
     numbers: Mapping[str, Numbers],
     size: int = arguments.BLOCK,
 ) -> Array:
-    """Values (...) of a formula without channels, computed like `evaluate_material`."""
+    """Values (...) of a formula without channels, computed in blocks."""
     values = evaluate_material(
         lambda **given: formula(**given)[np.newaxis], vectors, numbers, 1, size
     )

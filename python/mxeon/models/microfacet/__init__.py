@@ -109,8 +109,8 @@ def missing(pair: Pair) -> Array:
     return missing_of(pair.wo, pair.roughness)
 
 
-# For at least MANY views of one roughness, a polynomial of the degrees DEGREES replaces the
-# quadrature, unless the last coefficients exceed TAIL. `_series_variables` are the variables.
+# For at least MANY views of one roughness, a polynomial in `_series_variables` replaces the
+# quadrature, unless the last coefficients exceed TAIL. DEGREES are the degrees of the polynomial.
 DEGREES, TAIL = (32, 16), 5e-6
 MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
 
@@ -185,7 +185,7 @@ def missing_of(wo: Array, roughness: Array) -> Array:
         rows = [np.broadcast_to(each, shape)[selected] for each in (*views, *roughness)]
         total[selected] = _missing_by_views(np.stack(rows))
         return total
-    # If both alphas are equal, `at_both - at_mean` is 0, but its derivatives by the alphas are not.
+    # If both alphas are equal, `at_both - at_mean` is 0, but has nonzero derivatives.
     mean = ggx.mean_alpha(roughness)
     xp = array_namespace(wo, roughness)
     at_both, at_mean = (
@@ -197,7 +197,7 @@ def missing_of(wo: Array, roughness: Array) -> Array:
 
 @dataclass(frozen=True)
 class Lobe:
-    """Terms of a microfacet BRDF; the defaults are those of [MaterialX2026]."""
+    """Terms of a microfacet BRDF, by default the terms of [MaterialX2026]."""
 
     factor: Callable[[Pair], Array | float] = compensation
     visibility: Callable[[Pair], Array] = visibility  # G2 / (4 mu_o mu_i)
@@ -263,7 +263,7 @@ CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
 def _material(
     category: str, inputs: Mapping[str, ArrayLike]
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
-    """Fresnel curve of a node, and its validated inputs with channels and without channels."""
+    """Fresnel curve of a node, validated inputs with channels, and validated inputs without."""
     curve, colors, numbers = CATEGORIES[category]
     vectors = arguments.checked_vectors({name: inputs[name] for name in colors})
     return curve, vectors, arguments.checked_all({name: inputs[name] for name in numbers})
@@ -311,14 +311,14 @@ def dielectric_brdf(
     retroreflective: bool = False,
     compensate: bool = True,
 ) -> Array:
-    """Reflection of `dielectric_bsdf`, scatter mode R, with its energy compensation.
+    """Reflection of `dielectric_bsdf`, scatter mode R, with energy compensation.
 
         f = tint D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
     If `ior` < 1, light comes from the denser medium, and F is 1 beyond the critical angle. A
     negative `ior`, which stock MaterialX squares, is rejected. Accuracy: the relative error of the
-    compensation factor is below 1e-10; that of the other factors is below 2e-14 at alpha >= 0.05.
-    [MaterialX2026], sections Microfacet BRDF, Energy Compensation and dielectric_bsdf.
+    compensation factor is below 1e-10. At alpha >= 0.05, the relative error of the other factors is
+    below 2e-14. [MaterialX2026], sections Microfacet BRDF, Energy Compensation and dielectric_bsdf.
 
         >>> dielectric_brdf([0.6, 0.0, 0.8], [-0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.060074])
@@ -337,7 +337,7 @@ def conductor_brdf(
     retroreflective: bool = False,
     compensate: bool = True,
 ) -> Array:
-    """Reflection of `conductor_bsdf` with its energy compensation.
+    """Reflection of `conductor_bsdf` with energy compensation.
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
@@ -363,7 +363,7 @@ def generalized_schlick_brdf(
     retroreflective: bool = False,
     compensate: bool = True,
 ) -> Array:
-    """Reflection of `generalized_schlick_bsdf`, scatter mode R, with its energy compensation.
+    """Reflection of `generalized_schlick_bsdf`, scatter mode R, with energy compensation.
 
         f = D F G2 / (4 mu_o mu_i) (1 + F_ss (1 - E_ss) / E_ss)
 
@@ -395,8 +395,8 @@ def dielectric_albedo_dir(
     """Directional albedo of `dielectric_brdf`, by quadrature.
 
     For `ior` < 1, the slope of F is infinite at the critical angle, so the quadrature is split at
-    this angle. The error of isotropic lobes is below 1e-10. At alpha 0, the albedo is that of a
-    mirror, tint F(mu_o). [MaterialX2026], section Directional Albedo and Energy Conservation.
+    this angle. The error of isotropic lobes is below 1e-10. At alpha 0, the albedo is tint F(mu_o).
+    [MaterialX2026], section Directional Albedo and Energy Conservation.
 
         >>> dielectric_albedo_dir([0.6, 0.0, 0.8], 1.0, [0.3, 0.3], 1.5).round(6)
         array([0.040169])
@@ -488,8 +488,8 @@ def lobe_albedo(
         E = xp.sum(curve.at(c, **spread) * weight, axis=(1, 2))
         squared = curve.critical(**material)
         if not summed and (arrays.library(squared) or np.any(squared > 0.0)):
-            # The albedo is that of lossless facets minus the light transmitted by facets whose
-            # cosine exceeds the critical cosine.
+            # The albedo is the albedo of lossless facets, minus the light transmitted by facets
+            # whose cosine exceeds the critical cosine.
             alpha, isotropic = 0.5 * (roughness[0] + roughness[1]), roughness[0] == roughness[1]
             lossless = xp.where(isotropic, albedo(wo[2], alpha), xp.sum(weight, axis=(0, 1)))
             c, weight = transmitting_nodes(wo, roughness, arrays.at_least_0(squared))
@@ -500,7 +500,7 @@ def lobe_albedo(
 
     views = {"wo": wo, "roughness": roughness}
     lead_shape(views | dict(vectors), numbers)  # raises an error that names the arguments
-    # The compensation is the same for all slopes, so it is computed before the slopes add two axes.
+    # The compensation does not depend on slopes, which add two axes.
     channels, unseen, average = channel_count(vectors), np.zeros(()), np.zeros(1)
     if compensate:
         unseen = evaluate_number(missing_of, views, {})

@@ -69,7 +69,7 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """F_ss of a Schlick curve with exponent 5, in MaterialX for all curves since June 2026."""
+    """F_ss of a Schlick curve with exponent 5, used by MaterialX for all curves since June 2026."""
     return normal + (grazing - normal) / 21.0
 
 
@@ -101,7 +101,7 @@ def _compensated(F: Factor, lost: Factor) -> Factor:
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
 
-# Energy compensation in MaterialX 1.39.5, and in later versions of MaterialX.
+# Energy compensation: `fitted_half` in MaterialX 1.39.5, `averaged_fitted` in later versions.
 fitted_half = _compensated(_F_half, _missing_by_fit)
 averaged_fitted = _compensated(_F_average, _missing_by_fit)
 
@@ -128,8 +128,8 @@ def _june(pair: Pair) -> Array:
 UNCOMPENSATED = "no energy compensation"
 AND_FIT, AVERAGE_BY_ENDS = "and MaterialX's fit of E_ss", "the average F0 + (F90 - F0) / 21"
 MEAN_ALPHA = "Smith at the geometric mean"
-# Wrong compensations. The columns are the end of the defect's name, the end of the defect's title,
-# the function that replaces F_ss, and the function for (1 - E_ss) / E_ss.
+# Wrong compensations, as name, title, function that replaces F_ss, and function for
+# (1 - E_ss) / E_ss.
 COMPENSATIONS = (
     ("half", "F at the half vector", _F_half, microfacet.missing),
     ("f0", "F along the normal", _F_normal, microfacet.missing),
@@ -155,12 +155,12 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
 )
-# Microfacet lobes in MaterialX 1.39.5, and in later versions of MaterialX.
+# Microfacet lobes: FITTED in MaterialX 1.39.5, AVERAGED in later versions.
 FITTED = Lobe(fitted_half, _at_the_mean)
 AVERAGED = Lobe(averaged_fitted, _at_the_mean)
 MEAN_TITLE = f"{MEAN_ALPHA}, and MaterialX's compensation"
-# The first two rows are MaterialX's own lobes. Each other row combines MaterialX's compensation
-# with one further error, as may renderers that copied MaterialX's shaders.
+# The first two lobes are MaterialX's. Each further lobe combines MaterialX's compensation with
+# another error, which renderers may have that copied MaterialX's shaders.
 FITTED_DEFECTS = (
     MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
     MicrofacetDefect("smith_mean_average", f"{MEAN_TITLE} by F0 and F90", AVERAGED),
@@ -233,6 +233,6 @@ def fitted_compensation(wo: Array, inputs: Mapping[str, Array], F: Array) -> Arr
 
 
 def _arguments(wo: Array, inputs: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Cosine of wo's polar angle, and geometric mean of the alphas. Each is at least CLAMP."""
+    """Cosine of wo's polar angle and geometric mean of the alphas, clamped to at least CLAMP."""
     alpha = np.sqrt(np.maximum(inputs["roughness"], CLAMP).prod(axis=-1))
     return np.clip(wo[:, 2], CLAMP, 1.0), alpha

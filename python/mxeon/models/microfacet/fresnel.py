@@ -151,7 +151,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
 
 def _is_smooth(n2: Array) -> Array:
     """Whether F(c) is smooth: no singularity of F lies near the interval [0, 1] of cosines c."""
-    # F is singular at sqrt(1 - n^2) and at -1 / sqrt(1 + n^2), which is infinite for n^2 = -1.
+    # F(c) is singular at c^2 = 1 - n^2 and at c^2 = 1 / (1 + n^2), which may be infinite.
     with np.errstate(divide="ignore", invalid="ignore"):
         points = np.stack([np.sqrt(1.0 - n2), -1.0 / np.sqrt(1.0 + n2)])
     far = np.abs(points) + np.abs(points - 1.0) > 0.5 * (ELLIPSE + 1.0 / ELLIPSE)
@@ -161,9 +161,9 @@ def _is_smooth(n2: Array) -> Array:
 def _smooth_avg(ior: Array, extinction: Array) -> Array:
     """F_ss by Gauss-Legendre, for materials (N,) whose F is smooth in the cosine c.
 
-    `conductor` avoids cancellation, which is small for these materials. This form of the same F
-    takes a quarter of the time. With a and w of `conductor`, x = c^2, m = |w|^2, u = 2 c a and
-    B = x m + (1 - x)^2: F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
+    `conductor` avoids cancellation, which is negligible for these materials, so a form of F that
+    takes a quarter of the time is used. With a and w of `conductor`, x = c^2, m = |w|^2, u = 2 c a
+    and B = x m + (1 - x)^2, this form is F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
     """
     real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
     total = np.zeros(len(ior))
@@ -299,7 +299,7 @@ def fresnel_dielectric_avg(ior: ArrayLike) -> Array:
 def fresnel_conductor(mu: ArrayLike, ior: ArrayLike, extinction: ArrayLike) -> Array:
     """Fresnel reflectance of a conductor for unpolarized light.
 
-    Result (..., C): in [0, 1]. Without extinction, the result is that of `fresnel_dielectric`.
+    Result (..., C): in [0, 1]. Without extinction, the result equals `fresnel_dielectric`.
     Accuracy: the absolute error is below 1e-12, except at the critical angle of a dielectric that
     absorbs almost nothing. [MaterialX2026], section Conductor Fresnel Equations.
 

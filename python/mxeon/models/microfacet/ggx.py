@@ -40,7 +40,7 @@ LEAST_DIVISOR = 1e-140
 
 
 def ndf(wh: Array, roughness: Array) -> Array:
-    """D of section GGX Normal Distribution Function, without a division by alpha; 0 at alpha 0.
+    """D by the section GGX Normal Distribution Function. D is 0 at alpha 0.
 
     The published form is D = 1 / (pi a B^2), where a = alpha_x alpha_y and
     B = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2. To avoid a division by alpha, D is computed
@@ -57,7 +57,7 @@ def ndf(wh: Array, roughness: Array) -> Array:
 
 
 def smith_lambda(mu: Array, alpha: Array) -> Array:
-    """lambda(cos theta) of section Height-Correlated Smith Masking-Shadowing."""
+    """lambda(cos theta) by the section Height-Correlated Smith Masking-Shadowing."""
     return root(alpha * alpha + (1.0 - alpha) * (1.0 + alpha) * mu * mu)
 
 
@@ -153,8 +153,8 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
         G2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o),  l = |(alpha_x x, alpha_y y, z)|
 
     Result (...): in [0, 1]; 0 if wo or wi grazes the surface. The specification has used this
-    equation since July 2026 (pull request 3015 of MaterialX). For alpha_x = alpha_y, the result is
-    that of `smith_g2`. [Heitz2014], Eqs. (86), (99).
+    equation since July 2026 (pull request 3015 of MaterialX). For alpha_x = alpha_y, the result
+    equals `smith_g2`. [Heitz2014], Eqs. (86), (99).
 
         >>> smith_g2_anisotropic([0.6, 0.0, 0.8], [[0.0, 0.8, 0.6], [1.0, 0.0, 0.0]], [0.5, 0.25]).round(6)
         array([0.942466, 0.      ])
@@ -167,7 +167,7 @@ def smith_g2_anisotropic(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> 
     )
 
 
-# Larger anisotropies are clamped to this value, since anisotropy 1 would divide alpha_x by 0.
+# Largest anisotropy, because anisotropy 1 would lead to a division by 0.
 LARGEST_ANISOTROPY = 0.98
 
 
@@ -220,15 +220,15 @@ def glossiness_anisotropy(glossiness: ArrayLike, anisotropy: ArrayLike) -> Array
     return roughness_anisotropy(1.0 - g, a)
 
 
-# Three numbers: nodes per Gauss-Legendre panel, panels from wo to the normal, elements per block.
+# Quadratures use PANELS panels of RULE_NODES nodes from wo to the normal.
 RULE_NODES, PANELS, ALBEDO_BLOCK = 28, 3, 2**10
 RULE = np.polynomial.legendre.leggauss(RULE_NODES)
 
 # Smallest scale of the nodes near wo, and smallest elevation of wo, in radians. Both limits change
 # E_ss by less than 1e-10.
 LEAST_SCALE, LEAST_ELEVATION = 1e-8, 1e-200
-# Limit of elevations, and of alphas that are divisors, for libraries that compute derivatives. The
-# derivatives contain the square of the limit, which must not underflow in float32.
+# Lower limit of elevations and alphas for libraries that compute derivatives. Derivatives contain
+# the square of the limit, which must not underflow in float32.
 LEAST_SQUARED = 1e-15
 
 # Mantissas of cosines are rounded to multiples of 1 / MANTISSA_STEPS, so that more cosines are
@@ -257,9 +257,9 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
 
     Let u = |wo + wi|^2 = a + b cos(phi) and k = (1 - alpha^2) (mu + mu_i)^2. Then
     h_z^2 = (mu + mu_i)^2 / u, and the integral of (u / (u - k))^2 over the azimuth phi is
-    elementary. As a function of half the sum and half the difference of the elevations of wo and
-    wi, the result is a product of sums of positive numbers. The integral over the elevation of wi
-    is computed by quadrature, which is split at the elevation of wo, where the nodes are denser.
+    elementary. Written with half the sum and half the difference of the elevations of wo and wi,
+    the result contains only sums of positive numbers. The integral over the elevation of wi is
+    computed by quadrature, which is split at the elevation of wo, where the nodes are denser.
     [MaterialX2026], section Energy Compensation.
 
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
@@ -319,7 +319,7 @@ def quadrature(mu: Array, alpha: Array, refined: int = 1) -> Array:
 def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array]]:
     """Nodes and weights for [0, length] on the first axis.
 
-    The nodes are denser towards 0, and equally dense below `scale`.
+    The spacing at x is proportional to sqrt(x^2 + scale^2).
     """
     xp, ratio = array_namespace(scale, length), length / scale
     x, weight = (like(v.reshape(-1, *(1,) * ratio.ndim), ratio) for v in RULE)
@@ -330,7 +330,7 @@ def _graded(scale: Array, length: Array, panels: int) -> list[tuple[Array, Array
 
 
 def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
-    """Integrand of E_ss over the elevation e_i of wi; e_o is the elevation of wo, d = e_o - e_i.
+    """Integrand of E_ss at the elevations e_o of wo and e_i of wi, where d = e_o - e_i.
 
     C and S_d are the squared cosine and sine of half the difference of the polar angles. c and S
     are the squared cosine and sine of half the sum of the polar angles. With k, a and b as in
@@ -354,8 +354,8 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
     return alpha2 * mu_i * xp.cos(e_i) * azimuth / smith
 
 
-# Number of Chebyshev nodes in the cube root of s and in the square root of alpha. REFINED is the
-# argument `refined` of the quadrature that fills the table. A block has TABLE_BLOCK elements.
+# The table has NODES_S Chebyshev nodes in the cube root of s, and NODES_ALPHA nodes in the square
+# root of alpha. The quadrature for the table has REFINED times as many panels.
 NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
 # For at least MANY cosines and a single alpha, cubics in CELLS cells replace the polynomials. The
@@ -391,7 +391,7 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
 
 
 def _by_cubics(mu: Array, alpha: float) -> Array:
-    """`missing_light` for a single alpha; each cell of the cube root of s has its own cubic."""
+    """`missing_light` for a single alpha, by one cubic per cell of the cube root of s."""
     if alpha <= 0.0:
         return np.zeros(mu.shape)  # a mirror loses no light
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
@@ -416,7 +416,7 @@ def _cubics(alpha: float) -> Array:
     x = np.sort(chebyshev.chebyshev_nodes(4))
     values = chebyshev.chebyshev_sum(rows, (np.arange(CELLS)[:, np.newaxis] + x) / CELLS)
     cubics = np.linalg.inv(np.vander(x, increasing=True)) @ values.T
-    # The end of the last cell is the start of an extra cell, which is evaluated only at this point.
+    # The last cell ends at the start of an extra cell, which is evaluated only at the start.
     end = [chebyshev.chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)
 

@@ -5,8 +5,8 @@ If the half vector is parallel to (alpha_x r cos(phi), alpha_y r sin(phi), 1), a
 
     integral of F G2 (wo . wh) / (h_z mu_o) r / (pi (1 + r^2)^2) dr dphi,
 
-whose integrand has no sharp peak at any alpha. The integral over r ends where wi reaches the
-horizon. Before this end, the integrand has a kink only at the critical angle, where F has a kink.
+where r ends at the value for which wi reaches the horizon. For any alpha, the integrand has no
+sharp peak, and its only kink is at the critical angle, where F has a kink.
 """
 
 from __future__ import annotations
@@ -21,16 +21,17 @@ from mxeon.models.core.arrays import Array, array_namespace, at_least_0, at_most
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
-# Three numbers: Gauss-Legendre nodes per panel of r, panels of r, and nodes per quadrant of phi.
+# Each of PANELS panels of r has SLOPE_NODES Gauss-Legendre nodes, each quadrant of phi has
+# QUADRANT.
 SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
-# Numbers of nodes if there is a critical angle: nodes per panel of r, nodes per azimuth interval.
+# With a critical angle, a panel of r has SPLIT_NODES nodes, and an azimuth interval has SPLIT_PART.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
-# Smallest cosine of wo and largest r. Less than 1e-12 of the light has a larger r.
+# Smallest cosine of wo and largest r. Facets with a larger r reflect less than 1e-12 of the light.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
-# Smallest scale of the nodes in `slope_nodes`. Less than 1e-7 of the light has a smaller r.
+# Lower limit of `scale`. Facets with a smaller r reflect less than 1e-7 of the light.
 LEAST_SCALE = 3e-4
-# Largest r of refracting facets. At most the fraction 1 / r of the light has a larger r.
+# Largest r of refracting facets. Facets beyond r refract at most the fraction 1 / r of the light.
 FARTHEST_R = 1e12
 
 
@@ -65,13 +66,13 @@ class Slopes:
 
     @property
     def scale(self) -> Array:
-        """Width in r, and in omega near a right angle, of the steepest part of the integrand."""
+        """Width of the steepest part of the integrand, in r and in omega near a right angle."""
         maximum = array_namespace(self.mu_o, self.steepness).maximum
         return self.mu_o / maximum(self.steepness, self.mu_o)
 
     @property
     def isotropic(self) -> bool:
-        """Whether all surfaces are isotropic; always False for arrays other than NumPy's."""
+        """Whether all surfaces are known to be isotropic."""
         known = array_namespace(self.roughness) is arrays.NUMPY
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
@@ -109,7 +110,7 @@ class Slopes:
     ) -> tuple[Array, Array]:
         """Cosine wo . h and the integrand without F.
 
-        - `alpha`: If given, an isotropic alpha for G_2 / G_1 instead of the roughness.
+        - `alpha`: An isotropic alpha that replaces the roughness in G_2 / G_1, or None.
         """
         xp = array_namespace(r, B)
         lean = at_least_0(B * r + self.mu_o)
@@ -133,7 +134,6 @@ class Slopes:
 
 
 def _squared(slope: tuple[Array, Array]) -> Array:
-    """Squared length of a slope. The squared length of the slope at r = 1 is g in `Slopes.rays`."""
     return slope[0] ** 2 + slope[1] ** 2
 
 
@@ -187,11 +187,10 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
 def refracting_nodes(
     wo: Array, roughness: Array, squared: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Per visible facet: wo . h, cosine and stretched length of the refracted wi, and weight.
+    """For each node: wo . h, the cosine and stretched length of the refracted wi, and the weight.
 
-    The refracted wi = (L h - wo) / n must point below the horizon, where n^2 = 1 - squared and
-    L = |wo + n wi|. This requires an r that is larger than the smaller root of
-    mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
+    With n^2 = 1 - squared and L = |wo + n wi|, the refracted wi = (L h - wo) / n points below the
+    horizon if r exceeds the smaller root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
     """
     slopes = Slopes.seen(wo, roughness)
     mu_o = slopes.mu_o
@@ -199,8 +198,7 @@ def refracting_nodes(
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
     B, _, slope = slopes.rays(omega)
     g = _squared(slope)
-    # The smallest r belongs to a facet that refracts wo to the horizon, the largest r to total
-    # reflection.
+    # At the smallest r, facets refract wo to the horizon. Total reflection begins at the largest r.
     low, high = _transmitting(mu_o, B, g, squared)
     xp = array_namespace(mu_o, high)
     high = xp.minimum(high, FARTHEST_R)
@@ -242,15 +240,16 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
 def _split_azimuths(
     slopes: Slopes, wo: Array, squared: Array, meeting: Array
 ) -> tuple[Array, Array]:
-    """Nodes and weights of omega, in intervals that end at two azimuths on either side of wo.
+    """Nodes and weights in omega, in intervals that end at two azimuths on either side of wo.
 
-    One azimuth is `meeting`. At the other azimuth, facets at the critical angle are vertical.
+    The first azimuth is `meeting`. At the second azimuth, facets at the critical angle are
+    vertical.
     """
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
     inside, right = slopes.mu_o * slopes.mu_o >= squared, 0.5 * np.pi
     nodes = []
-    # wo . h grows with r in the half plane around omega 0, and falls in the other half plane.
+    # As r increases, wo . h increases for |omega| < pi / 2, and decreases for |omega| > pi / 2.
     for center in (0.0, np.pi):
         low, high = (
             xp.where(
@@ -275,13 +274,13 @@ def _split_azimuths(
 
 
 def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
-    """Angle with the cosine sqrt(squared) / sin(theta_o), an azimuth relative to wo."""
+    """Azimuth relative to wo whose cosine is sqrt(squared) / sin(theta_o)."""
     xp, sine = array_namespace(mu_o, squared), root((1.0 - mu_o) * (1.0 + mu_o))
     return arrays.arccosine(root(at_least_0(squared)) / xp.where(sine > 0.0, sine, 1.0))
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
-    """The coordinate omega of slopes with this azimuth relative to wo, both in [-pi, pi]."""
+    """The coordinate omega, in [-pi, pi], of slopes with an azimuth relative to wo."""
     xp, upright = array_namespace(wo, azimuth), hypot(wo[0], wo[1]) == 0.0
     x, y = xp.where(upright, 1.0, wo[0]), wo[1]
     cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
@@ -308,7 +307,7 @@ def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Nodes and weights in r for [low, high].
 
-    The nodes are denser towards both ends, and equally dense where r is smaller than `scale`.
+    The spacing is proportional to sqrt(r^2 + scale^2), and decreases towards both ends.
     """
     xp, (t, weight) = array_namespace(scale, low, high), _crowded(PANELS, SPLIT_NODES, low[0])
     first, last = xp.asinh(low / scale), xp.asinh(high / scale)
@@ -344,7 +343,7 @@ def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
 def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     """Nodes and weights for [0, length] on the first axis.
 
-    The nodes are denser towards 0, and equally dense below `scale`.
+    The spacing at x is proportional to sqrt(x^2 + scale^2).
     """
     xp, shape = array_namespace(length), (-1, *(1,) * (length.ndim - 1))
     x, weight = (like(each.reshape(shape), length) for each in unit_rule(SLOPE_NODES, PANELS))
@@ -352,5 +351,5 @@ def _graded(scale: Array, length: Array) -> tuple[Array, Array]:
     rise = xp.exp(extent * x)
     fall = 1.0 / rise
     half = 0.5 * scale
-    # Two calls of sinh and cosh would take three times as long as one exponential.
+    # One exponential takes a third of the time of sinh and cosh.
     return half * (rise - fall), weight * extent * half * (rise + fall)

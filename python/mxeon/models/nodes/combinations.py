@@ -45,7 +45,7 @@ CONTY_KULLA = conty_kulla_brdf, conty_kulla_albedo_dir
 def _values(
     combine: Combine, sheen: Sheen = ZELTNER, colored: bool = False
 ) -> tuple[Callable[[Array, Array, Inputs], Array], Albedo, Albedo]:
-    """Functions for a combination of lobes: value, albedo, and the E of the throughput 1 - E.
+    """Value, albedo and E of combined lobes, where 1 - E is the throughput.
 
     Albedos of `top` and `base` are clamped to 1. If `colored`, light that a color removes passes to
     the base.

@@ -34,9 +34,9 @@ def materialx_longitudinal(
 ) -> Array:
     """Longitudinal scattering M_p as in mx_chiang_hair_bsdf.glsl, after an older implementation.
 
-    The series of I_0 stops after ten terms. For x above 12, log I_0(x) contains only half of the
-    term 1 / (8 x). The cosine of a tilted direction keeps its sign, so x may be negative. The
-    series is also used for x below -12. The logarithm of 2 is rounded to 0.6931.
+    The series of I_0(x), x = cos_i cos_o / v, stops after ten terms. For x above 12, log I_0(x)
+    contains only half of the term 1 / (8 x). The cosine of a tilted direction keeps the sign, so x
+    may be negative. The series is also used for x below -12. log(2) is rounded to 0.6931.
     """
     a, b = cos_i * cos_o / v, sin_i * sin_o / v
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -210,11 +210,10 @@ LEAST_RADIUS = 0.1  # smallest radius of the diffusion profile
 
 
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
-    """The cosine of a light, blurred along a circle in the plane of light and normal as in
-    MaterialX.
+    """Cosine of a light, blurred along a circle in the plane of light and normal.
 
-    `mu` (N,) is the cosine, `radius` (N, 3) the mean free path, and `body` the radius of the
-    circle.
+    As in MaterialX, `mu` (N,) is the cosine, `radius` (N, 3) is the mean free path, and `body` is
+    the radius of the circle.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)

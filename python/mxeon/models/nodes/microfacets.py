@@ -38,10 +38,10 @@ class MicrofacetLobe:
 
     category: str
     fresnel: Callable[[Array, Inputs], Array]  # Fresnel reflectance F(mu, inputs)
-    edge: str = ""  # input for F at grazing incidence; "" if F is always 1 there
+    edge: str = ""  # input for F at grazing incidence; "" if F is always 1
 
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
-        """BRDF of the node. If `terms` replaces the specification's lobe, a film is ignored."""
+        """BRDF of the node. With `terms` instead of the specification's lobe, a film is ignored."""
         if terms is None and _has_film(inputs):
             return thin_film.film_brdf(self.category, wo, wi, inputs)
         return node_brdf(self.category, wo, wi, inputs, terms)
@@ -83,7 +83,7 @@ class MicrofacetLobe:
 
 
 def isotropic(inputs: Inputs) -> dict[str, Array]:
-    """Inputs in which the geometric mean of the two roughnesses replaces each roughness."""
+    """Inputs with both roughnesses replaced by the geometric mean of the roughnesses."""
     mean = np.sqrt(inputs["roughness"].prod(axis=-1, keepdims=True))
     return {**inputs, "roughness": np.repeat(mean, 2, axis=-1)}
 
@@ -203,7 +203,7 @@ STOCK = Form(
     thin_film.CIE_RGB, 2, True, 1.0, 0.01
 )  # MaterialX's choices, but with the full reflectance of a Schlick substrate
 MIXED = Form(mixed=True)
-# Columns: title, form of the thin-film model, and whether the specification permits the form.
+# Forms of the thin-film model, with title and whether the specification permits the form.
 FORMS = (
     ("MaterialX's matrix, orders and mixed channels", STOCK, True),
     ("half of the substrate's reflectance, and MaterialX's choices", thin_film.MATERIALX, False),
@@ -220,7 +220,7 @@ def _bare(inputs: Inputs) -> dict[str, Array]:
 
 
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
-    """Albedo in MaterialX's environment. If `averaged`, the compensation uses an average of F."""
+    """Albedo in MaterialX's environment, compensated with F at the view or with an average F."""
     mu = np.ones(len(wo)) if averaged else np.minimum(wo[:, 2], 1.0)
     F = thin_film.film_reflectance(category, mu, inputs, form)
     F = defects.schlick_average(F, 1.0) if averaged else F
@@ -229,7 +229,7 @@ def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: I
 
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """MaterialX's albedo for the throughput: a fit for no film, compensated with F of the film."""
+    """MaterialX's albedo in the throughput: the bare lobe's fit, compensated with F of the film."""
     F = thin_film.film_reflectance(lobe.category, np.minimum(wo[:, 2], 1.0), inputs, form)
     albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo
@@ -264,7 +264,7 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         words = "the bare lobe's fit, and the film in the compensation"
         variants.append(Variant(f"{title}: {words}", albedo=fitted))
     for title, form, permitted in FORMS:
-        one = form == MIXED and row.category == "dielectric_bsdf"  # channels do not differ
+        one = form == MIXED and row.category == "dielectric_bsdf"  # the channels are equal
         if one or (form.share != 1.0 and not schlick):
             continue
         lobes: list[tuple[str, Lobe | None]] = [(title, None)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types for tables of pbrlib's nodes: inputs with defaults, ranges and units, and functions.
+"""Types for tables of pbrlib's nodes: functions, and inputs with defaults, ranges and units.
 
 Inputs are a mapping from port names, in MaterialX's order, to values of shape (N,) or (N,
 components). Every node has an input `weight`, which the caller applies.
@@ -50,7 +50,7 @@ class Parameter:
     """An input of a model.
 
     - `name`: MaterialX's name.
-    - `default`: MaterialX's default, a tuple of three numbers for a color and of two for a pair.
+    - `default`: MaterialX's default, with three numbers for a color and two numbers for a pair.
     - `quantity`: Name of the input in the functions of `mxeon.models`, accepted in addition to
       `name`.
     """
@@ -91,15 +91,13 @@ Function = TypeVar("Function", covariant=True)  # type of a node's function
 
 @dataclass(frozen=True)
 class Variant(Generic[Function]):
-    """An alternative function that a shader may use instead of the function of the node."""
+    """Alternative functions that a shader may use instead of a node's own functions."""
 
     title: str
-    value: Function | None = None  # None if the function of the node is used
+    value: Function | None = None  # None for the node's own function
     albedo: Callable[[Array, Inputs], Array] | None = None
     permitted: bool = False  # whether the specification permits the variant
-    above: bool = (
-        False  # whether `albedo` is only the light withheld from a layer's base, colors included
-    )
+    above: bool = False  # whether `albedo` only determines how much the node darkens a lower layer
 
 
 @dataclass(frozen=True)

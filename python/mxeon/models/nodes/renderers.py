@@ -31,7 +31,7 @@ def _dielectric_albedo(wo: Array, inputs: Inputs) -> Array:
 
 
 def _schlick_albedo(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a dielectric with the mean channel of `color0` as reflectance at normal incidence."""
+    """Albedo of a dielectric with the mean channel of `color0` as normal-incidence reflectance."""
     return _dielectric_albedo(wo, {**inputs, "ior": index_of(inputs["color0"].mean(axis=-1), 0.0)})
 
 
@@ -100,14 +100,14 @@ def _largest(albedo: Array) -> Array:
 
 
 def _lossless(lobe: microfacets.MicrofacetLobe, wo: Array, inputs: Inputs) -> Array:
-    """Single-scattering albedo's largest channel, divided by the albedo of lossless facets."""
+    """Largest channel of the single-scattering albedo, divided by E_ss."""
     alpha = microfacets.isotropic(inputs)["roughness"][:, 0]
     missing = missing_light(wo[:, 2], alpha)[:, np.newaxis]
     return _largest(_single(lobe, wo, inputs) * (1.0 + missing))
 
 
 def _lossless_dielectric(wo: Array, inputs: Inputs) -> Array:
-    """`_lossless` for an index of refraction above 1, or else the albedo of a smooth dielectric."""
+    """`_lossless` for an IOR above 1, otherwise the albedo of a smooth dielectric."""
     smooth = DIELECTRIC_LOBE.fresnel(np.minimum(wo[:, 2], 1.0), inputs) * inputs["tint"]
     rough = _lossless(DIELECTRIC_LOBE, wo, inputs)
     return np.where(np.reshape(inputs["ior"], (-1, 1)) > 1.0, rough, _largest(smooth))

@@ -3,8 +3,8 @@
 
 Inputs are a mapping from port names to values of shape (N,) or (N, components). Values outside the
 range of a model are clamped, as implementations do, because the specification accepts [0, 1] for
-most inputs and does not define the result for other values. The constants named `LEAST_...` and
-`LARGEST_...` are limits inside that range.
+most inputs and does not define the result for other values. Constants named `LEAST_...` and
+`LARGEST_...` are limits inside [0, 1].
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
 
 
 def _dual(inputs: Inputs) -> dict[str, Array]:
-    """Squares of two roughnesses. A negative second roughness is replaced by the first one."""
+    """Squares of two roughnesses. The first roughness replaces a negative second roughness."""
     pair = np.asarray(inputs["roughness"], np.float64)
     second = np.where(pair[..., 1] < 0.0, pair[..., 0], pair[..., 1])
     return {"out": roughness_dual(np.clip(np.stack([pair[..., 0], second], axis=-1), 0.0, 1.0))}

@@ -59,7 +59,7 @@ CLEARCOAT_F0 = 0.04
 
 
 def alphas(p: Parameters) -> Array:
-    """alpha along tangent and bitangent, (N, 2). `anisotropy_strength` raises only the first."""
+    """alpha along tangent and bitangent, (N, 2). `anisotropy_strength` raises alpha_x."""
     across = np.square(p["roughness"])
     along = lerp(across, 1.0, np.square(p["anisotropy_strength"]))
     return np.concatenate(np.broadcast_arrays(along, across), axis=1)
@@ -74,7 +74,7 @@ def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
     covered = p["iridescence"]
 
     def reflected(f0: Array, f90: Array) -> tuple[Array, Array]:
-        """Values and albedos of a specular lobe. A thin film covers the share `covered`."""
+        """Values and albedos of a specular lobe. A thin film covers a fraction of the lobe."""
         inputs = lobes.schlick_inputs(f0, f90, alpha)
         f, E = light.both(lobes.SCHLICK, frame, **inputs)
         if not np.any(covered):
