@@ -120,7 +120,7 @@ def definition_facts(
 
 
 def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
-    """The attributes of a document's units and geometric properties that the release defines."""
+    """Attributes, in a document, of all units and geometric properties of the release."""
     names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
     definitions = [own for own in map(document.getChild, names) if own]
     return {
@@ -258,7 +258,7 @@ class Comparison:
         return own, released, *(each.getImplementation(self._target) for each in (own, released))
 
     def _change(self, name: str) -> Hashable:
-        """A key that is equal for nodes with the same change of text; None to skip a node."""
+        """A key that is equal for nodes with the same change of text, or None to skip a node."""
         own, released, code, released_code = self._pair(name)
         if released_code is None:
             return None

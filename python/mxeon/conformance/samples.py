@@ -239,7 +239,7 @@ def directions_at(mu: ArrayLike, azimuth: ArrayLike) -> Array:
 
 FRAMES = 1 << 12  # maximum number of pairs with individual frames
 LEAN = 0.3  # largest slope of a tangent relative to the surface
-SKY_ROWS = 128  # rows of the sky map; the map has twice as many columns
+SKY_ROWS = 128  # number of rows of the sky map, which has twice as many columns
 SLOPE = 0.5  # derivative of a channel of the sky's irradiance along the channel's axis
 
 

@@ -36,7 +36,7 @@ class FunctionCheck(NamedTuple):
 
     key: str  # a single word
     claim: str  # a full sentence
-    names: str  # pattern of function names; the first row that matches applies
+    names: str  # pattern of function names, where the first matching row applies
     error: tolerance.Tolerance
     turns: bool = False  # whether the functions rotate vectors with the engine's sine and cosine
 

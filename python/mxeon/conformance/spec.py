@@ -33,8 +33,8 @@ class Input:
 
     name: str  # name of the input, or path of a port in a graph
     type: str = "float"  # MaterialX type
-    low: ArrayLike = 0.0  # lower end of the range of random values; may differ by component
-    high: ArrayLike = 1.0  # upper end of the range of random values; may differ by component
+    low: ArrayLike = 0.0  # lower end of the range of random values, or one end per component
+    high: ArrayLike = 1.0  # upper end of the range of random values, or one end per component
     edges: tuple[float, ...] = ()  # half of the special samples use these values
     # Value that must change the result, or None for inputs without a visible effect.
     change: ArrayLike | None = None

@@ -66,7 +66,7 @@ def scaled(measured: Array, expected: Array) -> Array:
 
 
 def relative(measured: Array, expected: Array) -> Array:
-    """Largest relative difference of each row. Each value is divided by its expected value."""
+    """Largest relative difference of each row. Values are divided by expected values."""
     return absolute(measured / expected, 1.0)
 
 

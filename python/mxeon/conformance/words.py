@@ -10,7 +10,7 @@ from mxeon.conformance import results
 from mxeon.conformance.results import Cause, Diagnosis, Difference, Kind, Region, Result, Run
 from mxeon.shaders.nodes import FLAG
 
-NAMED = 3  # maximum number of names in a list; other names are counted
+NAMED = 3  # maximum number of listed names, after which names are only counted
 DIFFERENCES_SHOWN = 3  # maximum number of reported differences between two node graphs
 AS_SPECIFIED = "looks as specified"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All checks in the order of execution; each module of this package defines a table of checks."""
+"""All checks in the order of execution. Each module of this package defines a table of checks."""
 
 from mxeon.conformance.check import Check
 from mxeon.conformance.checks import clients, lobes, microfacets, other_nodes, paths, states

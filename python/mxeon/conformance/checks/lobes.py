@@ -166,7 +166,7 @@ ZEROS = (*product(["throughput"], BRANCHES), *product(["response"], ["transmissi
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
     """Outputs of an opaque node. Throughputs must be 1 - weight, and other outputs must be 0.
 
-    Hair has no input `weight`; the weight of hair counts as 1.
+    Hair has no input `weight` and counts as a lobe of weight 1.
     """
     for batch in case.few:
         weight = np.array(np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo)))

@@ -183,7 +183,7 @@ def anisotropic_albedo(case: Case) -> Iterator[Compared]:
 
 
 def own_lookups(case: Case) -> list[Methods]:
-    """Methods with the library's own environment lookups; empty if a client chose other methods."""
+    """Methods with the library's own environment lookups, unless a client chose the methods."""
     from mxeon.shaders.library import environment_folders
 
     if case.host.active == GENERATED and not case.control and environment_folders(case.library):
@@ -598,7 +598,7 @@ def film_average(case: Case) -> Compared:
 def film_smooth(case: Case) -> Compared:
     """Values F (1 + F_ss k) of smooth lobes, compared with a prediction from smoother lobes.
 
-    F and k are measured on the host; F_ss is computed by the equations.
+    F and k are measured on the host, and F_ss is computed by the model.
     """
     batch = film_views(case.of(FilmSpec), microfacets.FRINGED)
     F, F_ss = averages(case, case.expected, batch)

@@ -148,7 +148,7 @@ class Paths:
         inside: ArrayLike = False,
         inputs: Values = NO_INPUTS,
     ) -> Array:
-        """Values (N, 3) of the function `what` of FUNCTIONS; 0 where nothing is sampled.
+        """Values (N, 3) of the function `what` of FUNCTIONS, or 0 where nothing is sampled.
 
         - `u`: Random numbers that select a sample.
         - `inside`: Whether the viewer is inside a solid.
@@ -185,7 +185,7 @@ class Paths:
 def paths(
     host: base.Host, document: str, library: str = "eonlib", varied: tuple[str, ...] = ()
 ) -> Paths:
-    """Path-tracing code of a document; inputs with a name or path in `varied` become variables."""
+    """Path-tracing code of a document. Inputs with a name or path in `varied` become variables."""
     from mxeon.shaders.generation import generate
 
     uniforms = bool(varied)
@@ -271,7 +271,7 @@ def lattice(count: int) -> Array:
 
 
 def refracted(wo: Array, index: float = 1.5) -> Array:
-    """Direction in which a smooth surface refracts a view; -wo beyond the critical angle."""
+    """Direction in which a smooth surface refracts a view, or -wo beyond the critical angle."""
     x, y, _ = -wo / index
     return np.array([x, y, -np.sqrt(1.0 - x * x - y * y)]) if x * x + y * y < 1.0 else -wo
 
@@ -543,7 +543,7 @@ CLOSE = 2.0  # largest difference between two quadratures of a patch, in samples
 MOST_DEVIATIONS = 6.0  # tolerance of the check `pdf`, in standard deviations
 CONE = 0.02  # angular width of the first ring of cells, in radians
 LEAST = 1e-7  # angle from the pole, in radians, up to which a density counts as constant
-INNER = 9  # number of rings of patches in the first ring of cells; radii grow geometrically
+INNER = 9  # number of rings of patches, of geometric widths, in the first ring of cells
 RARE = 10.0  # cells with fewer expected samples are merged
 
 

@@ -67,7 +67,7 @@ def same(pixels: Pixels, rng: Random) -> Pixels:
 
 
 def lit(pixels: Pixels, rng: Random, count: int, first: float = 1.0, second: float = 1.0) -> Pixels:
-    """Set the number of lights; if `first` or `second` is -1, move that light to the dark side."""
+    """Set the number of lights. If `first` or `second` is -1, that light is on the dark side."""
     wi = pixels.batch.wi
     batch = replace(pixels.batch, wi=wi * [1.0, 1.0, first])
     light = np.roll(wi, 1, axis=0) * [1.0, 1.0, second]
@@ -502,7 +502,7 @@ def shared(wrong: Mask, states: Sequence[set[str]]) -> results.Cause:
 
 
 def named(states: Iterable[str], axes: Mapping[str, Mapping[str, object]]) -> set[str]:
-    """Names of states that are not first in an axis, and of their groups (words before a colon)."""
+    """Names of states that are not the default, and names of groups, which end at a colon."""
     first = {next(iter(each)) for each in axes.values()}
     parts = [state.split(":") for state in states if state not in first]
     return {":".join(each[: count + 1]) for each in parts for count in range(len(each))}

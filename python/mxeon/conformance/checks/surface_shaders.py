@@ -110,7 +110,7 @@ def glass(case: Case) -> Iterator[Compared]:
     passed = spec.transmitted(batch, case.opaque)
     measured = case.transmitted(batch)
     yield Compared(batch, measured, passed)
-    if case.host.active.environment == "fis":  # other methods fit albedos or reflect nothing
+    if case.host.active.environment == "fis":  # skip methods that fit albedos or reflect nothing
         yield Compared(batch, measured + case.albedo(batch), passed + case.expected_albedo(batch))
 
 

@@ -55,7 +55,7 @@ REMAINING = 0.1  # smallest share of the light that must remain after a cure
 SAME, NEAR = 0.03, 0.3
 FAR = 0.2  # largest distance of a near model, relative to the distance of the expected model
 NAMED = 0.5  # largest distance of a model to report, relative to the distance of black values
-INEXACT = 30.0  # errors up to this many tolerances count as inaccuracy of the expected model
+INEXACT = 30.0  # errors up to 30 tolerances count as inaccuracy of the expected model
 LEAST_LIGHT = 1e-3  # cosine of the light below which faults of the cosine look alike
 
 
@@ -81,9 +81,10 @@ def explain(
     """Explain values by candidates, or by faults of the node's own model.
 
     - `candidates`: Functions that may have computed the values. The first is the node's own model.
-    - `measure`: The check's measurement, to be repeated for other inputs; None to try no other inputs.
+    - `measure`: The check's measurement, to be repeated for changed inputs, or None to change no
+      inputs.
     """
-    if infinite := not_finite(cases):  # NaN has no distance; explain only finite values
+    if infinite := not_finite(cases):  # explain only finite values
         finite = [each.where(np.isfinite(each.measured.sum(axis=1))) for each in cases]
         others = NO_DIAGNOSIS
         if any(tolerance.wrong(each).any() for each in finite):
@@ -96,7 +97,7 @@ def explain(
     candidates = [own, *candidates[1:]]
     models = {each.title: _distance(short, each, NO_FAULT, tolerance) for each in candidates}
     ranking = sorted(models.items(), key=lambda item: item[1])
-    # Search for a fault of the node's own model if no other candidate explains the values.
+    # Search for a fault of the node's own model unless another candidate explains the values.
     if ranking[0][0] == own.title or ranking[0][1] > tolerance.value:
         names = [each.name for each in case.spec.inputs if each.name not in DIMMING]
         exchanged = exchanges(names) if faults else ()
@@ -259,7 +260,7 @@ def _cures(
 
 
 def not_finite(cases: Sequence[Compared]) -> tuple[Cause, ...]:
-    """A cause with the region of non-finite values; empty if all values are finite."""
+    """A cause with the region of non-finite values, or () if all values are finite."""
     zeros = list(map(regions.unbounded, cases))
     if not any(EXACT.wrong(each).any() for each in zeros):
         return ()

@@ -35,7 +35,7 @@ NO_FAULT = Fault("")
 
 
 def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Batch]:
-    """A function that changes one input of a batch; batches without the input stay unchanged."""
+    """A function that changes one input of a batch, if the batch has the input."""
 
     def changed(batch: Batch) -> Batch:
         if name not in batch.inputs:
@@ -46,7 +46,7 @@ def _input(name: str, change: Callable[[Array], Array]) -> Callable[[Batch], Bat
 
 
 def _scaled(scale: Callable[[Batch], Array]) -> Callable[[Batch, Array], Array]:
-    """A function that scales values by a factor per pair; a factor that is not finite becomes 0."""
+    """A function that scales values by a factor per pair, or by 0 if a factor is not finite."""
 
     def scaled(batch: Batch, values: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -26,7 +26,7 @@ from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 # Size of a picture that shows a pattern node, and maximum number of pattern nodes that are drawn to
 # find a wrong node.
 PATTERN_SIZE, PATTERNS_DRAWN = 32, 16
-# Smallest reported error of a pattern node; texture filters and powers have smaller errors.
+# Smallest reported error of a pattern node, above errors of texture filters and powers.
 PATTERN_ERROR = 0.01
 LATTICE = 32  # number of judged rows and columns in a picture with more than MOST materials
 MOST = 2000  # maximum number of integrals, each of which takes a millisecond
@@ -85,7 +85,7 @@ class ExpectedPicture:
     """The picture that a correct host would render."""
 
     image: NDArray[np.float64]
-    judged: NDArray[np.bool_]  # mask of computed pixels; all other pixels copy a neighbor
+    judged: NDArray[np.bool_]  # mask of computed pixels, which the remaining pixels copy
     measured: tuple[str, ...]  # node inputs whose values the judged host has drawn
     lobes: tuple[ShownLobe, ...] = ()  # lobes with a nonzero weight
 
@@ -188,7 +188,7 @@ def _lattice(size: int, stride: int) -> NDArray[np.bool_]:
 
 @lru_cache(maxsize=8)
 def _points(scene: Scene, stride: int, most: float) -> ShadingPoints:
-    """The points and the light of a picture; raises NotRun if the light is an image."""
+    """The points and the light of a picture. Raise NotRun if the light is an image."""
     points = sphere(scene.size)
     mask = points.mask & _lattice(scene.size, stride)
     normal, texcoord = points.normal[mask], points.texcoord[mask]

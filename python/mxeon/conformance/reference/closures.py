@@ -31,7 +31,7 @@ Arguments: TypeAlias = Mapping[str, Array]
 THROUGH, GRAPH = "transmission", "graph"  # branches of `mxeon.hosts.base.Host.evaluate`
 ONE = np.ones((1, 1))
 ROUNDED = 1e-4  # largest difference of unit vectors that may be due to rounding
-LEAST_HAIR = 1e-12  # smallest hair roughness; at 0, the lobe is a delta function
+LEAST_HAIR = 1e-12  # smallest hair roughness, because a roughness of 0 means a delta function
 GGX = "ggx"  # the only supported microfacet distribution
 EMISSION, MEDIUM, HAIR = "uniform_edf", "anisotropic_vdf", HAIR_NODE.category
 LIGHTLESS = (EMISSION, MEDIUM, "transparent")  # closures that scatter no light at the surface
@@ -135,7 +135,7 @@ class Views:
 
 
 def _coefficient(tree: ClosureTree | None, argument: str, name: str) -> Array | None:
-    """Weighted sum of an argument over closures called `name`; None if there is no such closure."""
+    """Weighted sum of an argument over the closures called `name`, or None without closures."""
     if tree is None:
         return None
     if tree.name == name:
@@ -157,7 +157,7 @@ def _only_medium(tree: ClosureTree | None) -> bool:
 
 
 def _mixed(first: Callable[[], Bsdf], second: Callable[[], Bsdf], share: Array) -> Bsdf:
-    """A mix of two lobes with `share` of the second lobe; a lobe with share 0 is not evaluated."""
+    """A mix of two lobes with `share` of the second lobe. Lobes with share 0 are not evaluated."""
     if not np.any(share):
         return first()
     return second() if np.all(share == 1.0) else layering.mix(second(), first(), share)

@@ -56,7 +56,7 @@ class Graph(Nodes):
         points: ShadingPoints,
         inputs: Mapping[str, ArrayLike] | None = None,  # values that replace document values
         emits: bool = True,  # whether emission and opacity count
-        measure: Measure | None = None,  # returns values of unsupported nodes; None to raise NotRun
+        measure: Measure | None = None,  # values of unsupported nodes, or None to raise NotRun
     ) -> None:
         super().__init__()
         self._document, self._points, self._inputs = document, points, inputs or {}
@@ -97,7 +97,7 @@ class Graph(Nodes):
         return graphs.reachable(roots, lambda path: self._step(path)[1])
 
     def _evaluate(self, root: Path) -> Value:
-        """Value at a path; each node is evaluated once, without recursion."""
+        """Value at a path. Each node is evaluated once, without recursion."""
         parts = self._parts([root])
         uses = Counter(part for inner in parts.values() for part in inner)
         values: dict[Path, Value] = {}
@@ -214,7 +214,7 @@ class Graph(Nodes):
         return self._connected(path[:-1], port, label)
 
     def _replaced(self, path: Path, name: str) -> Array | None:
-        """Value of an input that the caller replaces, or None; numbers are (N, 1)."""
+        """Value of an input that the caller replaces, (N, 1) for a number, or None."""
         lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None
@@ -243,7 +243,7 @@ class Graph(Nodes):
         return found
 
     def _output(self, path: Path, output: str) -> Path:
-        """Path of a node's output; the name `output` matters only if a node has several outputs."""
+        """Path of a node's output. The name `output` only matters if a node has several outputs."""
         node = self.elements[path]
         if node.getType() != "multioutput":
             return path
@@ -313,7 +313,7 @@ class Graph(Nodes):
 
 
 def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> Value:
-    """Value of a node's operation; raises OutsideModel for invalid inputs."""
+    """Value of a node's operation. Raise OutsideModel for invalid inputs."""
     try:
         return nodes.fitted(node.getType(), operation(*values))
     except ValueError as error:
@@ -321,7 +321,7 @@ def _applied(node: mx.Node, operation: Callable[..., Value], *values: Value) -> 
 
 
 def _rows(names: Iterable[str], values: Iterable[Array], count: int = 1) -> dict[str, Array]:
-    """Inputs of a model, with one row per point and at least `count` rows; numbers are (N,)."""
+    """Inputs of a model, as numbers (N,) and colors (N, 3), with at least `count` rows."""
     columns = [np.atleast_2d(np.asarray(value, np.float64)) for value in values]
     count = max(count, *map(len, columns))
     rows = (np.broadcast_to(each, (count, each.shape[1])) for each in columns)
@@ -343,7 +343,7 @@ def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str,
 
 
 def _linear(element: mx.Element, value: Array) -> Array:
-    """A color in the document's color space; raises NotRun for a transform other than sRGB's."""
+    """A color in the document's color space. Raise NotRun for any transform except sRGB's."""
     spaces = color_spaces(element)
     if spaces is None:
         return value

@@ -166,7 +166,7 @@ class ShadingPoints:
     def lobe(
         self, node: PbrNode, inputs: Inputs, layered: bool, normal: Array, tangent: Array
     ) -> Bsdf:
-        """A lobe of weight 1 in a frame; the throughput is 0 unless `layered`."""
+        """A lobe of weight 1 in a frame. The throughput is 0 unless `layered`."""
         plain = np.array_equal(normal, self.normal) and np.array_equal(tangent, self.tangent)
         wo, wi = self.local if plain else self.directions(normal, tangent)
 
@@ -183,7 +183,7 @@ class ShadingPoints:
         return self._lobes.value(key, scattered)
 
     def scattered(self, node: PbrNode, wo: Array, wi: Array | None, inputs: Inputs) -> Array:
-        """Light that a lobe sends to the viewer, (N, 3); directions are in the lobe's frame.
+        """Light that a lobe sends to the viewer, (N, 3). Directions are in the lobe's frame.
 
         For a distant light, the result is f |cos(theta_i)|, or 0 if the light is on the dark side.
         For an environment, the result is the directional albedo or the transmitted share.
@@ -230,7 +230,7 @@ class ShadingPoints:
         return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
-        """The geometric property with a MaterialX name; raises NotRun for unknown names."""
+        """The geometric property with a MaterialX name. Raise NotRun for unknown names."""
         known = {"Nworld": self.normal, "Tworld": self.tangent, "UV0": self.texcoord}
         known["Bworld"] = np.cross(self.normal, self.tangent)
         if (value := known.get(name)) is None:
@@ -261,12 +261,12 @@ class ShadingPoints:
 
 
 def at(inputs: Inputs, points: NDArray[np.intp]) -> dict[str, Array]:
-    """Inputs at some of the points; an input may have one row for all points."""
+    """Inputs at the given points. An input with a single row applies to all points."""
     return {name: each[points] if len(each) > 1 else each for name, each in inputs.items()}
 
 
 def albedo_at(albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-    """An albedo of a lobe at each view; integrals are computed once for equal views and inputs."""
+    """An albedo of a lobe at each view. Equal views with equal inputs share one integral."""
     wo = np.minimum(wo, 1.0)  # rounded cosines may exceed 1
     if not node.fitted and node.integral is None:
         return np.asarray(np.broadcast_to(albedo(wo, inputs), wo.shape))
@@ -311,7 +311,7 @@ class ShownLobe:
 def node_lobe(
     node: mx.Node, inputs: Mapping[str, Array], points: ShadingPoints, layered: bool
 ) -> Bsdf:
-    """Lobe of a node; raises NotRun for input values that the models do not cover."""
+    """Lobe of a node. Raise NotRun for input values that the models do not cover."""
     weight = np.reshape(inputs.get("weight", np.ones(1)), (-1, 1))  # hair has no weight
     if (beyond := weight[~((weight >= 0.0) & (weight <= 1.0))]).size:
         raise _outside(node, f"weight must lie in [0, 1]; got {beyond[0]:g}")
@@ -384,7 +384,7 @@ def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
 
 
 def plain(value: Plain) -> Array | bool | str | None:
-    """A MaterialX value as a bool, a string, an array or None; raises NotRun for a matrix."""
+    """A MaterialX value as a bool, a string, an array or None. Raise NotRun for a matrix."""
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, (mx.Matrix33, mx.Matrix44)):
@@ -404,7 +404,7 @@ WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 
 def fitted(kind: str, value: Value) -> Value:
-    """A value converted to a type; a number is repeated for all components.
+    """A value converted to a type. A number is repeated for all components.
 
     Missing components become 0, but a missing alpha becomes 1.
     """

@@ -41,7 +41,7 @@ SOURCE = "source"  # replaces the host in checks of text, which need no host
 SHADER_FUNCTIONS = "shader twins"  # subject of the checks of a library's functions
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # file patterns of a report
-DIRECT = ("value", "lobe")  # checks in direct light; every node has one of these checks
+DIRECT = ("value", "lobe")  # checks in direct light, one of which applies to every node
 VISIBLE = 0.01  # smallest visible contrast, as a fraction of white or of a highlight
 
 Item = TypeVar("Item")

@@ -229,7 +229,7 @@ def _line(record: dict[str, object]) -> bytes:
 
 
 def _differences(before: Plan, after: Plan) -> tuple[str, ...]:
-    """The differences between two plans, as old and new values and as names of files."""
+    """The differences between two plans: options with old and new values, and changed files."""
     old, new = (
         {
             **{"mxeon": plan.version, **plan.software, **plan.options},

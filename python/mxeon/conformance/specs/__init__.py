@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All nodes that the conformance suite judges; each module covers a family of nodes."""
+"""All nodes that the conformance suite judges. Each module covers a family of nodes."""
 
 from mxeon.conformance.spec import Spec
 from mxeon.conformance.specs.clients import CLIENT_FRAME
@@ -16,7 +16,7 @@ from mxeon.conformance.specs.surface_texts import SENTENCES
 from mxeon.conformance.specs.utilities import INVERSION_SPECS, UTILITY_SPECS
 
 PLAIN_LOBES = (BURLEY, TRANSLUCENT, CONTY_KULLA, ZELTNER, *FACET_SPECS)
-# Every run judges the nodes of COMMON; other nodes are judged only if the user names the nodes.
+# Every run judges the nodes of COMMON. All other nodes must be named by the user.
 COMMON: tuple[Spec, ...] = (*PLAIN_LOBES, *COMBINED_SPECS, *INVERSION_SPECS, CLIENT_FRAME)
 # fmt: off
 PBRLIB: tuple[Spec, ...] = (

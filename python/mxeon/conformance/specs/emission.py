@@ -18,7 +18,7 @@ from mxeon.shaders import nodes, scene
 
 
 def title_of(row: emissions.Emission | Medium, kind: str) -> str:
-    """Title of a row; the title includes types if MaterialX has the category for several types."""
+    """Title of a row, with types if MaterialX has the category for several types."""
     if "/" not in next(iter(row.inputs)):  # a node that combines no other nodes
         return row.category
     factor = f", in2 {row.name.rpartition('_')[2]}" if row.category == "multiply" else ""
@@ -33,7 +33,7 @@ def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
 def chained(
     row: emissions.Emission | Medium, kind: str, source: str, name: str, text: str = ""
 ) -> dict[str, nodes.Node]:
-    """The row's node, called `name`, and nodes of category `source` that the row's node combines.
+    """The row's node, called `name`, which may combine nodes of category `source`.
 
     An input whose path contains the name of a node belongs to that node.
     """

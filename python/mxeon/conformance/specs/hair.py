@@ -26,7 +26,7 @@ WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrate
 # Share of light that comes from the viewer's side: for R, for TT, for TRT, and for higher orders.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])
 STEP = 1e-6  # step of an angle, in radians, for finite differences
-LEAST = 0.01  # errors are relative to the larger of this number and the value
+LEAST = 0.01  # errors are relative to max(value, 0.01)
 
 # fmt: off
 INPUTS = (

@@ -32,7 +32,7 @@ FLAT_FRAME = sum_of(roundings(15 / TURNED[0], "of three cosines of at least 1/4,
 def lobe_errors(
     value: Tolerance, albedo: Tolerance, throughput: Tolerance, frame: Tolerance, quadrature: float
 ) -> dict[str, Tolerance]:
-    """Tolerances of a lobe; `quadrature` is the error of an albedo integrated from exact values."""
+    """Tolerances of a lobe. An albedo integrated from exact values has the error `quadrature`."""
     sums = Term(quadrature, "the quadrature of the equations")
     integral = sum_in(Quantity.ALBEDO, value.term("an average of values"), sums)
     light = integral.term("an albedo"), throughput.term("a throughput")
@@ -54,7 +54,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
 
     @property
     def black(self) -> Values:
-        """Inputs that make the node scatter nothing; empty if there are none."""
+        """Inputs that make the node scatter nothing, or {} without such inputs."""
         names = ("color", "tint", "color0", "color90", *TINTS)
         return {name: (0.0, 0.0, 0.0) for name in names if name in self.row.inputs}
 
@@ -66,7 +66,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return material_text(self.node, {**self.mode, **(inputs or {})}, self.node, self.types)
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """Values pi f |cos(theta_i)|, times weight and occlusion, (N, 3); 0 on the unlit side."""
+        """Values pi f |cos(theta_i)|, times weight and occlusion, (N, 3). Unlit sides are 0."""
         wi = batch.wi.copy()
         wi[:, 2] = self.side * np.abs(wi[:, 2])
         lit = (batch.wi[:, 2:] < 0.0) == self.row.transmits

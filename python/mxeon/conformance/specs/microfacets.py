@@ -81,7 +81,7 @@ BUBBLE: Values = dict.fromkeys(("weight", "tint", "ior"), 1.0)
 BUBBLE = {**BUBBLE, "thinfilm_ior": 2.5, "thinfilm_thickness": 325.0}
 BUBBLE_ROW = 3
 
-# Largest errors of the shaders' fits; scripts in tools/fits measure these errors.
+# Largest errors of the shaders' fits, measured by scripts in tools/fits.
 ESS_FIT = 5e-4  # error of E_ss (ggx_albedo.py)
 SMOOTH_ESS_FIT = 5.3e-5  # error of E_ss of smooth lobes at cosines from 0.05 (ggx_albedo.py)
 # Error of a value with compensation, due to the fit of E_ss (ggx_albedo.py). The error is relative
@@ -101,8 +101,8 @@ LEAST_ESS = 1.0 - math.log(2.0)  # smallest E_ss, at alpha 1 along the normal
 def sum_over(directions: int) -> Term:
     """Error of a lobe's mean over `directions` samples of an environment.
 
-    `tools/fits/lattices.py` measures the error for three point sets; for MaterialX's own points,
-    the error is half as large.
+    `tools/fits/lattices.py` measures the error for three point sets. MaterialX's own points have
+    half of the error.
     """
     return Term(3.6 / directions, f"a sum over {directions} directions of an environment")
 
@@ -514,7 +514,7 @@ def film_terms(alpha: float) -> tuple[Term, Term]:
 
 
 def _mean(value: float, words: str) -> Tolerance:
-    """Tolerance of the rms error of a set of films; tools/fits/thin_film.py measures the value."""
+    """Tolerance of the rms error of a set of films, measured by tools/fits/thin_film.py."""
     return single(value, Quantity.REFLECTANCE_RMS, words, tolerance.root_mean_square)
 
 
@@ -573,7 +573,7 @@ ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
 # Numbers of samples are small, because averages of films are slow.
 FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
 LEAST_OIL = 1.2  # smallest IOR of films with a visible effect
-LEAST_FILM = 1.25  # smallest IOR of films for albedos; below 1.25, metals may reflect totally
+LEAST_FILM = 1.25  # smallest IOR of films for albedos. Below 1.25, metals may reflect totally.
 LEAST_FACET = 0.1  # smallest cosine to the half vector, because grazing light needs all orders
 THICK = (0.0, 1.0, 100.0, 1e4)  # film thicknesses at the edges of the domain, in nm
 

@@ -69,7 +69,7 @@ SUBSURFACE = SubsurfaceSpec(
 
 
 def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
-    """Diffused light on a unit sphere, (N, 3); `changes` replace inputs."""
+    """Diffused light on a unit sphere, (N, 3), for inputs with `changes`."""
     inputs = batch.altered(**changes).inputs
     reach = inputs["radius"] / (1.0 - inputs["anisotropy"])
     light = [np.interp(batch.wi[:, 2], COSINES, _profile(each, far)) for each in reach.tolist()]
@@ -78,7 +78,7 @@ def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
 
 @lru_cache(maxsize=128)
 def _profile(reach: float, far: float) -> Array:
-    """Diffused light at COSINES, between which linear interpolation has an error of 2e-4."""
+    """Diffused light at COSINES. Linear interpolation between COSINES has an error of 2e-4."""
     return blur_to(COSINES, np.array(max(reach, 1e-9)), far)
 
 

@@ -96,7 +96,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
     plain = ("frame", "shape", "lobes", "inputs from an image")
 
     judged: tuple[Input, ...]  # inputs whose effect on values is compared with the reference
-    others: tuple[Input, ...]  # inputs of other lobes and films, for the checks of energy and films
+    others: tuple[Input, ...]  # inputs that only the checks of energy and films vary
     # Inputs without an effect in rasterizers; see docs/upstream/surface_inputs.md.
     without_effect: tuple[str, ...]
     white: Values  # inputs of a material that is lossless by the layer equation
@@ -201,7 +201,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return draw(rng, count, self.varied if edged else self.judged, edged)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random pairs and materials; half of the lights are near the mirror direction."""
+        """Random pairs and materials. Half of the lights are near the mirror direction."""
         rng, count = generator(), counts.pairs
         wo, wi = _views(rng, count), samples.directions(rng, count)
         alpha = np.full((count, 2), LIGHT_ALPHA)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sentences from the specifications of four surface shaders, with materials to test each sentence.
 
-Each row fixes some inputs, draws other inputs at random, and compares the shader with a model of the
-specification in `mxeon.models.surfaces`. `permitted` lists alternative formulas that the
-specification permits; `wrong` lists erroneous formulas that a diagnosis can recognize.
+Each row fixes some inputs, draws other inputs at random, and compares the shader with a model of
+the specification in `mxeon.models.surfaces`. `permitted` lists alternative formulas that the
+specification permits. `wrong` lists erroneous formulas that a diagnosis can recognize.
 """
 
 from __future__ import annotations

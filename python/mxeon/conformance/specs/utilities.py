@@ -79,7 +79,7 @@ LEAST_LOGARITHM = 1e-4  # smallest argument at which a logarithm is measured
 
 
 def _shares() -> Array:
-    """Random float32 numbers in [0, 1]; the last number is 1."""
+    """Random float32 numbers in [0, 1]. The last number is 1."""
     return float32(np.append(generator().random(FEWER), 1.0))
 
 
@@ -148,7 +148,7 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
         return color
 
     def rescaled(self, compared: Compared) -> Compared:
-        """Scale a metal's IOR n + ik so that roundings have a uniform effect; keep other outputs.
+        """Scale a metal's IOR n + ik so that roundings have a uniform effect.
 
         n becomes n (1 - sqrt(r))^2, because n has the divisor 1 - sqrt(r). k becomes k^2 (1 - r) /
         (n_max + 1)^2, because k^2 has the divisor 1 - r and is a difference of terms as large as
@@ -165,7 +165,7 @@ class UtilitySpec(spec.RowSpec[utilities.Outputs]):
 
 
 def _batch(inputs: Mapping[str, Array]) -> Batch:
-    """A batch with the given inputs; the directions have no effect."""
+    """A batch with the given inputs. The directions have no effect."""
     count = len(next(iter(inputs.values())))
     up = np.broadcast_to([0.0, 0.0, 1.0], (count, 3))
     return Batch(up, up, inputs)
