@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the averaged picture on the canvas, enlarged if it was drawn smaller, and encoded as sRGB.
+// Draws the averaged picture on the canvas. Small pictures are enlarged. Colors are sRGB.
 
 uniform highp sampler2D stage_picture;
 // Size of the canvas, and the part of the picture's texture that was drawn.

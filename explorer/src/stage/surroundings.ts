@@ -100,7 +100,7 @@ export function irradianceMap(radiance: SkyMap): SkyMap {
     directions(SUMMED_ROWS).flatMap(({ direction, solidAngle }) => [...direction, solidAngle]),
   );
   return mapOf(IRRADIANCE_ROWS, ([x, y, z]) => {
-    // This loop adds four million terms before the first picture, so it must not allocate objects.
+    // The loop must not allocate objects, because four million terms delay the first picture.
     let [red, green, blue, weights] = [0, 0, 0, 0];
     for (let k = 0; k < incoming.length; k += 4) {
       const cosine = x * incoming[k]! + y * incoming[k + 1]! + z * incoming[k + 2]!;

@@ -177,7 +177,7 @@ def _importing(progress: output.Progress) -> Callable[[Iterable[T], int], Iterat
     def steps(outcomes: Iterable[T], total: int) -> Iterator[T]:
         for outcome in progress(outcomes, total):
             yield outcome
-            # An import could swallow a signal. The report itself reports a missing package.
+            # A signal during an import could get lost. The report itself reports a missing package.
             with signals.block_signals(), suppress(ImportError):
                 import mxeon.report.page as _  # noqa: F401
 

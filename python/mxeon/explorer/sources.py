@@ -174,7 +174,7 @@ def _material_sources(material: ComparedMaterial) -> tuple[ShaderSource, ...]:
     }
     reference = reference_of(shaders["eonlib"])
     [paths] = path_texts(material.text).values()
-    # Only single lobes have references with permitted forms, so `mxeon check` judges the rest.
+    # Only references of single lobes have permitted forms. `mxeon check` judges other materials.
     several = reference and not reference.forms and OREN_NAYAR not in material.text
     judged = LIBRARIES if several else ()
     with temporary_folder("mxeon-explore-") as folder:

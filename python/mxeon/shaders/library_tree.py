@@ -33,7 +33,7 @@ from mxeon.errors import InputError
 from mxeon.io.files import AnyPath, regular
 from mxeon.jobs.signals import Temporary, block_signals
 
-# All of eonlib, only eonlib's diffuse nodes, and unmodified MaterialX.
+# Libraries: all of eonlib, only the diffuse nodes of eonlib, and unmodified MaterialX.
 LIBRARIES = ("eonlib", "diffuse", "stock")
 WHOLE, PART, OVERLAY = "whole", "part", "overlay"
 NEEDED = ("targets", "stdlib", "pbrlib")  # subfolders of a library of the kind "whole"

@@ -13,7 +13,7 @@ from mxeon.shaders.library import load_library
 
 @cache
 def hidden() -> mx.Document | None:
-    """The data libraries of the installed MaterialX if a custom build hides it, otherwise None."""
+    """The libraries of the installed MaterialX; None unless a custom build replaces MaterialX."""
     known = [path for each in sys.path if (path := Path(each, "MaterialX", "libraries")).is_dir()]
     if not known or known[-1].samefile(Path(mx.__file__).with_name("libraries")):
         return None

@@ -28,7 +28,7 @@ MESH = "polyhedron.npz"
 
 
 class PolyhedronHost(Engine):
-    samples: ClassVar[int]  # per pixel under an environment; 1 is enough under a distant light
+    samples: ClassVar[int]  # samples per pixel under an environment
     script: ClassVar[Path]  # program of the worker process
     device: ClassVar[str]
     missing: ClassVar[str] = ""  # message if the renderer is not installed
