@@ -12,7 +12,7 @@
 // operations. Near n = 1 and above 4, d would be too large, so n is clamped to [1.001, 4]. Smooth
 // surfaces keep n above 4 but enlarge the cosine of wo.
 //
-// The Schlick curve is F0 except at grazing. F0 and F90 set MaterialX's transmission to `share`:
+// The Schlick curve is F0 except at grazing. F0 and F90 set MaterialX's transmission to `share`.
 //   sampled: (1 - F0) / G_1(mu)     prefiltered, with fits A and B: 1 - (A F0 + B F90)
 vec3 microfacet_transmitted(MicrofacetLobe lobe, int distribution, FresnelData fd, vec3 share, vec3 tint)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// path_asked selects the `response` of a closure:
+// path_asked selects the `response` of a closure.
 //   PATH_VALUE: f cos(theta_i) for path_wo and path_wi
 //   PATH_PDF: (weight, density of path_wi in 1/sr, 0)
 //   PATH_DRAW: (weight, drawn direction packed into two numbers)

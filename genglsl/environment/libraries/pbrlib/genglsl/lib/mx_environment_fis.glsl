@@ -17,7 +17,7 @@ vec3 mx_environment_radiance(vec3 N, vec3 V, vec3 X, vec2 alpha, int distributio
     vec3 wo = vec3(dot(V, X), dot(V, Y), dot(V, N));
     float mu_o = clamp(wo.z, M_FLOAT_EPS, 1.0);
 
-    // [Heitz2014], Eqs. (43), (86) and (99), where l = |(alpha_x x, alpha_y y, z)| of wo or wi:
+    // [Heitz2014], Eqs. (43), (86) and (99), where l = |(alpha_x x, alpha_y y, z)| of wo or wi.
     //   G_1 = 2 mu_o / (mu_o + l_o),  G_2 = 2 mu_o mu_i / (l_o mu_i + l_i mu_o)
     vec3 stretch = vec3(alpha, 1.0);
     float length_o = length(stretch * wo);
