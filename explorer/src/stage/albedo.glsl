@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Directional albedo of a model by quadrature, at 256 cosines. This text follows the definition of
-// STAGE_VALUE.
+// Directional albedo of a model by quadrature, at 256 cosines. STAGE_VALUE evaluates the model.
 //
 // The integrand is smooth except at the polar angle of wo, where the larger cosine switches, and at
 // the azimuth where s changes sign. Each smooth rectangle has 16 by 16 Gauss-Legendre nodes. Angles

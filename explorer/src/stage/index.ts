@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage: draws a state when it changes, refines the picture at rest, then stops.
+// The stage draws a state after each change, refines the picture at rest, and then stops.
 
 import type { PageData, ShaderSource, Triple, Vec3 } from "../data";
 import type { SideName, State } from "../state";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance of the part with the material: the model's value times the light, plus the model's
-// albedo times the surroundings. This text follows the model's functions and the definitions of
-// STAGE_VALUE and STAGE_ALBEDO.
+// albedo times the surroundings. STAGE_VALUE and STAGE_ALBEDO evaluate the model.
 
 uniform highp sampler2D stage_surface;
 uniform highp sampler2D stage_place;

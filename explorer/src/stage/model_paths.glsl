@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wraps a model in the interface that path tracing expects of generated materials. This text
-// follows the model's functions and the definitions of STAGE_VALUE, STAGE_SAMPLE and STAGE_PDF.
+// Wraps a model in the interface that path tracing expects of generated materials. STAGE_VALUE,
+// STAGE_SAMPLE and STAGE_PDF evaluate and sample the model.
 
 uniform vec3 stage_rho;
 uniform float stage_parameter; // Roughness or sigma of the model

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces one path per pixel and pass, and averages the paths of all passes. This text follows a
-// material with the interface for path tracers (docs/path_tracing.md), path_random, the shapes, the
-// camera and the texture coordinates.
+// Traces one path per pixel and pass, and averages the paths of all passes. docs/path_tracing.md
+// describes the functions of the material.
 
 uniform highp sampler2D stage_before;
 uniform highp sampler2D stage_before_square;

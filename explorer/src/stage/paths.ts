@@ -72,7 +72,7 @@ export class Paths {
     const squares = gpu.readPixels(this.gl, this.target(side, passes), 1, area);
     let [sum, variance, count] = [0, 0, 0];
     for (let k = 0; k < means.length; k += 4) {
-      if (means[k + 3] !== 1) continue; // Coverage also varies at the rim.
+      if (means[k + 3] !== 1) continue; // Skip the rim, where coverage varies.
       const mean = ((means[k] ?? 0) + (means[k + 1] ?? 0) + (means[k + 2] ?? 0)) / 3;
       sum += mean;
       variance += Math.max((squares[k] ?? 0) - mean * mean, 0) / (passes - 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of both materials in linear light, premultiplied by its opacity, averaged with the
-// earlier frames.
+// Combines the pictures of both materials in linear light, premultiplied by opacity, and averages
+// all frames.
 
 uniform highp sampler2D stage_left;
 uniform highp sampler2D stage_right;
@@ -25,7 +25,7 @@ uniform bool stage_backdrop; // Whether the surroundings are visible.
 
 out vec4 stage_picture;
 
-// The gray floor, Lambertian.
+// The gray Lambertian floor.
 vec3 stage_floor(vec3 normal, float ambient, float lit)
 {
     vec3 light = vec3(stage_intensity * lit * max(dot(normal, stage_light_view), 0.0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance of the surroundings: formulas, rendered to latitude-longitude maps like MaterialX's.
+// Formulas for the radiance of surroundings, drawn to maps with MaterialX's latitude and longitude.
 
 import type { Texels, Triple, Vec3 } from "../data";
 import type { Surroundings } from "../state";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wrong variants of python/mxeon/models/diffuse.py, for texts that include the models.
+// The wrong variants of models in python/mxeon/models/diffuse.py.
 //
 // Arguments are wo and wi in the local frame, rho per channel, and the model's roughness or sigma.
 
