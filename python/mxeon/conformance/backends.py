@@ -181,7 +181,6 @@ class Backend(ABC):
         return cast(ScatteringSpec, self.spec).integral(views)
 
     def supported(self, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """The inputs, limited to values that the backend supports."""
         return dict(inputs)
 
     def points(self, scene: Scene) -> Pairs:
@@ -688,7 +687,6 @@ class Pictures(Backend):
         return PICTURE_SIZE // self.spec.coarse
 
     def points(self, scene: Scene) -> Pairs:
-        """Directions at the points of a picture's sphere, and a mask of the points to judge."""
         wo, wi, _ = picture_pairs(scene)
         mu_i = wi[:, 2] * (1.0 if scene.light is None else self.spec.side)
         return wo, wi, np.minimum(wo[:, 2], mu_i) >= self.spec.rim

@@ -211,7 +211,6 @@ def dead_inputs(
 
 
 def unchanged(before: Array, after: Array) -> NDArray[np.bool_]:
-    """Whether values differ by rounding errors at most."""
     return np.isclose(before, after, rtol=ROUNDED, atol=ROUNDED, equal_nan=True)
 
 

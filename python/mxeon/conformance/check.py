@@ -49,7 +49,6 @@ class Specs:
 
 
 def family(kind: type[S], condition: Callable[[S], bool] = lambda spec: True) -> Specs:
-    """The specs of a class that satisfy a condition."""
     return Specs(lambda spec: isinstance(spec, kind) and condition(spec))
 
 
@@ -141,7 +140,6 @@ class Check:
         return key if isinstance(key, Tolerance) else case.tolerance(key)
 
     def judge(self, case: Case) -> Result:
-        """The result for a case, with the negative control and, on failure, a diagnosis."""
         spec, claim = case.spec, case.spec.claim or self.claim
         names = self.key, claim, spec.title, case.host.name, case.library
         claimed, model = case.backend.claims

@@ -396,7 +396,6 @@ class Comparison:
     def _compiled(
         self, document: mx.Document, node: mx.Node, library: str, client: tuple[str, ...] = ()
     ) -> generation.Shader:
-        """The shader of a material that consists of one node."""
         if (kind := node.getType()) != "surfaceshader":
             node = connected("surface", "shading", "surfaceshader", node, kind.lower(), kind)
         connected("surfacematerial", "look", "material", node, "surfaceshader", "surfaceshader")

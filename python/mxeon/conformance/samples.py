@@ -86,7 +86,6 @@ class Batch:
         return self.where(slice(count))
 
     def where(self, rows: slice | NDArray[np.bool_] | NDArray[np.integer]) -> "Batch":
-        """The pairs that a slice, a mask or indices select."""
         count = len(self.wo)
         inputs = {
             name: values[rows] if np.shape(values)[:1] == (count,) else values

@@ -29,8 +29,6 @@ F = TypeVar("F")  # type of the functions in a row of the models' table
 
 @dataclass(frozen=True)
 class Input:
-    """An input of a node."""
-
     name: str  # name of the input, or path of a port in a graph
     type: str = "float"  # MaterialX type
     low: ArrayLike = 0.0  # lower end of the range of random values, or one end per component

@@ -20,8 +20,6 @@ ROUNDING = 2.0**-24  # unit roundoff of float32
 
 
 class Compared(NamedTuple):
-    """A batch with measured and expected values."""
-
     batch: Batch
     measured: Array
     expected: Array

@@ -75,8 +75,6 @@ class Control:
 
 
 class Kind(Enum):
-    """Kinds of causes."""
-
     NONE = ""
     MODEL = "model"  # the known model or defect nearest to the values
     FAULT = "fault"  # a wrong use of the correct model that reproduces the values
@@ -403,7 +401,7 @@ def report_files(folder: AnyPath) -> Iterator[Path]:
 
 @dataclass(frozen=True)
 class Refused:
-    """The faults of a document that `library` cannot read, or no library if `library` is ""."""
+    """The faults of a document that `library` cannot read. The name "" means all libraries."""
 
     document: str
     faults: tuple[str, ...]
@@ -425,7 +423,7 @@ class Scope:
       MaterialX.
     - `contents`: Titles of the nodes in each document that the user named, by the document's path.
     - `unreached`: Regions that a node's inputs never reach, by document and by the node's title.
-    - `refused`: The documents that could not be judged, or not with one library.
+    - `refused`: The documents that could not be judged with some or with all libraries.
     - `libraries`: Files of each folder that was judged as a library. The key "folder" has the
       folder's own files. The key "MaterialX" has the files that complete the folder, unless the
       folder is loaded before MaterialX.

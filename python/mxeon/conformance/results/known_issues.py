@@ -70,7 +70,6 @@ class Issue:
 
     @property
     def hosts(self) -> tuple[str, ...]:
-        """All hosts that show the defect."""
         return (self.host, *self.also, *(GENERATED_GLSL if self.host == "gl" else ()))
 
     @property
@@ -157,7 +156,6 @@ SPREAD = 1.5  # largest ratio of an error to the error that another system measu
 
 
 def issues_of(result: Result) -> tuple[Issue, ...]:
-    """The known issues that explain a result."""
     return tuple(issues()[page] for page in result.pages if page in issues())
 
 

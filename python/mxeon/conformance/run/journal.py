@@ -65,7 +65,6 @@ class Journal:
         self._lock.release()
 
     def _claim(self) -> None:
-        """Lock the folder and clear the results of earlier runs."""
         for name in (JOURNAL, LOCK, *REPORTS, PREVIOUS, f"{PREVIOUS}/{JOURNAL}"):
             below(self._folder, name)
         self._folder.mkdir(parents=True, exist_ok=True)

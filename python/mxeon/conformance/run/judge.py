@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A class that executes the tasks of a run in sequence."""
+"""Executes the tasks of a run in sequence, on hosts that stay open between tasks."""
 
 import os
 import time
@@ -51,8 +51,6 @@ def one_result(
 
 
 class Judge:
-    """Executes tasks in sequence and keeps hosts open between tasks."""
-
     def __init__(self, policy: Policy, opened: Callable[[str], base.Engine] = open_engine) -> None:
         self._policy, self._open = policy, opened
         self._hosts: dict[str, base.Engine | NotRun] = {}  # open hosts, or errors

@@ -138,8 +138,8 @@ MEAN = sum_in(Quantity.ALBEDO, ESS, MEAN_METAL)
 ENVIRONMENT = sum_in(Quantity.ALBEDO, *COMPENSATION, sum_over(1024))
 THROUGHPUT = sum_in(Quantity.ALBEDO, ESS, LOBE)
 SCHLICK_THROUGHPUT = THROUGHPUT.plus(HALF_DIP)
-# The distribution of normals h is proportional to q^-4 with q^2 = h_z^2 + (h_x / a_x)^2 + (h_y / a_y)^2.
-# Therefore the logarithm of the distribution has a slope of at most 2 / min(a_x, a_y).
+# The distribution of normals h is proportional to q^-4, where q is the length of the vector
+# (h_x / a_x, h_y / a_y, h_z). The logarithm of q^-4 has a slope of at most 2 / min(a_x, a_y).
 FRAME = sum_of(
     roundings(
         2 * 2 * 5 / (2 * samples.TURNED[0] * samples.LEAST_TURNED),
@@ -211,8 +211,6 @@ def facet_errors(throughput: Tolerance) -> dict[str, Tolerance]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacetSpec(lobes.PbrSpec):
-    """A microfacet node in one mode."""
-
     counts: Counts = COUNTS
     least_cosine: float = sheen.FIT_COSINE
 
@@ -573,7 +571,7 @@ ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
 # Numbers of samples are small, because averages of films are slow.
 FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
 LEAST_OIL = 1.2  # smallest IOR of films with a visible effect
-LEAST_FILM = 1.25  # smallest IOR of films for albedos. Below 1.25, metals may reflect totally.
+LEAST_FILM = 1.25  # smallest IOR of films for albedos, as metals may reflect totally below 1.25
 LEAST_FACET = 0.1  # smallest cosine to the half vector, because grazing light needs all orders
 THICK = (0.0, 1.0, 100.0, 1e4)  # film thicknesses at the edges of the domain, in nm
 
