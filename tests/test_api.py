@@ -72,7 +72,7 @@ def test_one_name_or_path_is_taken_and_several_where_there_may_be(short, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_anything_else_is_refused_in_a_sentence(short, name):
     wrong = [3, b"clay.mtlx", [3], [["eon"]]]
-    if name not in ("files", "nodes", "profile", "element"):  # the listed names may be None
+    if name not in ("files", "nodes", "profile", "element"):  # None is valid for these names
         wrong.append(None)
     if name in ("files", "hosts", "libraries", "nodes"):
         wrong.append([])

@@ -24,8 +24,8 @@ CLAY = {"color": np.array([0.7, 0.35, 0.12]), "roughness": 0.62}
 COATED = CLAY | {"alpha": 0.3, "ior": 1.5}
 PAGE_COAT = {"color": [0.55, 0.28, 0.18], "roughness": 0.7, "alpha": 0.25, "ior": 1.45}
 NOISE = 0.05
-# Each of 24 fits has 4 or 6 normal deviates. In one of 1200 runs, one of these deviates exceeds
-# 4.5. In one of 10,000 runs, the spread of 96 deviates is off by more than 30 %.
+# 24 fits have 4 or 6 normal deviates each. By chance, a deviate exceeds 4.5 in one of 1200 runs,
+# and the spread of 96 deviates is off by more than 30 % in one of 10,000 runs.
 LARGEST_DEVIATE, FITS, SPREAD = 4.5, 24, (0.7, 1.3)
 
 

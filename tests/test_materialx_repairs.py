@@ -52,7 +52,7 @@ ON_MAIN = [page for page in PATCHES if {*CHANGED} & {*PATCHES[page].read_text().
 
 
 def rows_of(names):
-    """Checks on several pages by host, each with other causes that may explain a failure."""
+    """Checks on several pages, by host, with further causes that may explain a failure."""
     return {
         (*row, ISSUES[page].host or "gl"): ISSUES[page].remains.get(row, ())
         for page in names

@@ -26,8 +26,8 @@ SLICE = {
     "osl: s negated": "languages",
     "average: c2 1e-3 off": "output",
 }
-SHARE = 0.1  # fraction of the automatically generated mutants that is tested
-# Name of the task for checks that are part of a larger task.
+SHARE = 0.1  # tested fraction of the generated mutants
+# Names of tasks that run several checks, by check.
 TASKS = {"languages": SOURCE, "densities": "twins"}
 
 
@@ -58,7 +58,7 @@ def test_every_source_and_every_document_of_implementations_has_mutants():
 
 
 def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_listed(gl):
-    """The listed survivors are the control, which a check that always fails would detect."""
+    """If a check always failed, the test would report the known survivors."""
     tenth = {each.name: each for each in operators.made(1, SHARE) if not each.survives}
     tenth |= {each.name: each for each in operators.made(1, SHARE / 4.0) if each.survives}
     found = schemata.trials(list(tenth.values()))

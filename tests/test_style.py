@@ -26,7 +26,7 @@ FRAGMENT = re.compile(f"(^|  ) *# ({'|'.join(WORDS.split())}|without) ")
 
 
 def fragments(text):
-    """Lines whose comment begins like a fragment; continuation lines and strings are ignored."""
+    """Lines whose comment begins like a fragment, except continuation lines and strings."""
     lines, found = [line.lstrip() for line in text.splitlines()], []
     for before, line in pairwise(["", *lines]):
         if FRAGMENT.search(line) and line[:1] != '"' and not (before[:1] == line[:1] == "#"):

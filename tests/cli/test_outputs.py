@@ -43,8 +43,8 @@ TRUSTED = ("library", "library's source", "definitions")
 MATERIAL = ("document", "include", "texture", "set of textures", "source", "included source")
 MATERIAL += TRUSTED
 OPTIONS = "--library lib --definitions defs --workers 0"
-# Commands that write files, each without the final argument, which is the output's path. Each value
-# holds that path and the roles of the files that the command reads.
+# Commands without the final argument, which is the output's path. Values are the output's path, and
+# the roles of the files that the command reads.
 WRITING = {
     f"render look.mtlx --environment sky.exr {OPTIONS} --output": (
         "out.png",

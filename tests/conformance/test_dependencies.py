@@ -29,7 +29,7 @@ NAMES = {
 
 
 def run_of(folder, *named):
-    """Check a document that names other files; return the run's folder and the document's path."""
+    """Check a document that names other files. Return the run's folder and the document's path."""
     text = Path(PLASTER).read_text(encoding="utf-8")
     file = folder / "plaster.mtlx"
     file.write_text(text.replace("</materialx>", f"{''.join(named)}</materialx>"), encoding="utf-8")

@@ -30,7 +30,7 @@ def shown(judged, tmp_path):
 
 
 FILM = {"roughness": (0.0, 0.0), "thinfilm_thickness": 550.0, "thinfilm_ior": 1.5}
-# Template of a nodegraph that outputs a color. The names of the graph and its node are filled in.
+# Template of a nodegraph that outputs a color, with gaps for the names of the graph and the node.
 COLOR = """<nodegraph name="{graph}">
   <multiply name="{node}" type="color3">
     <input name="in1" type="color3" value="{color}"/>
@@ -48,7 +48,7 @@ def test_a_film_of_the_index_of_its_schlick_substrate_has_one_phase(shown):
     film = lobe("generalized_schlick_bsdf", color0=(0.04, 0.04, 0.04), **FILM)
     result, *_ = shown(material(film))
     assert result.verdict == "passed"
-    assert result.error < 1e-4  # a wrong phase of the reflection would cause an error of 0.17
+    assert result.error < 1e-4  # a reflection with the wrong phase would cause an error of 0.17
 
 
 def test_direct_light_shows_a_wrong_curve_of_a_film_on_metal(shown, tmp_path):

@@ -16,9 +16,9 @@ FILMED, HALF = "genglsl/lib/microfacet_film.glsl", "genglsl/lib/half_vector.glsl
 
 OPAQUE = "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));"
 
-# Mutations of shaders by node title. Each row holds the file, the original text, its replacement
-# (OLD stands for the original), the check that detects the mutation, parts of one cause in the
-# diagnosis, and the verdict unless the verdict is "failed".
+# Mutations of shaders by node title. Each row holds the file, the original text, the new text, in
+# which OLD stands for the original text, the check that detects the mutation, parts of one cause in
+# the diagnosis, and the verdict unless the verdict is "failed".
 WRONG = {
     "oren_nayar_diffuse_bsdf, energy_compensation true": (
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = max(roughness, 0.1);\n    OLD", "lambert",
@@ -493,8 +493,8 @@ def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
     checks = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
-    # Other tests cover these checks: `test_wrong_libraries.py` breaks functions, frames and the
-    # release's texts, and tests above break a color space and drop an input of a surface.
+    # Checks that other tests cover: tests of `test_wrong_libraries.py`, and the tests above of a
+    # color space and of a dropped input.
     elsewhere = {"client", "color_space", "reach", "release"}
     elsewhere |= {"densities", "loss", "parts", "samples", "twins"}
     assert {*checks, *DRAWN} - failing == elsewhere

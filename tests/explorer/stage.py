@@ -15,7 +15,8 @@ RHO = (0.8, 0.4, 0.1)
 ROUGHNESS = 0.9
 LIGHTS = {"side": (60.0, 20.0), "back": (125.0, 10.0)}  # azimuth and elevation in degrees
 VIEWPORT = {"width": 200, "height": 170}
-# Script that scales the page's clock. At speed 0 no frame seems slow, so the resolution stays high.
+# Script that scales the page's clock. At speed 0, no frame seems slow, so the resolution stays
+# high.
 CLOCK = """speed => {
     globalThis.clock ??= performance.now.bind(performance);
     performance.now = () => speed * globalThis.clock();

@@ -83,9 +83,8 @@ def test_in_uniform_surroundings_pixels_are_the_albedo(stage, sources, name):
     measured = picture(stage)
     points = sphere(len(measured))
     mu = points.normal[points.mask][:, 2]
-    # The clamp in a wrong variant makes a kink in the integrand, at most pi long, which crosses
-    # panels of 16 nodes. If nodes are h apart and a slope jumps by 1, the error is h^2 / 12 per
-    # unit of length.
+    # The clamp in a wrong variant causes a kink in the integrand along a curve of length pi at
+    # most. If nodes are h apart and a slope jumps by 1, the error is h^2 / 12 per unit of length.
     kink = (np.pi / 2 / 16) ** 2 / 12 * np.pi if row.name == "eon_clamped" else 0.0
     assert np.abs(measured[points.mask] - white(row, mu)).max() < TWIN_ALBEDO + kink
     assert np.abs(measured[points.mask] - 1.01 * white(row, mu)).max() > TWIN_ALBEDO + kink

@@ -13,8 +13,8 @@ from tests.support.tolerances import FIT_ANGLE, FIT_LOSS
 
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
 # Relative error of values, caused by the fits in the GLSL. A BRDF value has two factors with the
-# fitted loss. In full Oren-Nayar, two squared angles multiply the error of the fitted angle by 4.
-# The slopes of the other terms add 3 and 2 to this factor.
+# fitted loss. In full Oren-Nayar, the error of the fitted angle has the factor 4 from two squared
+# angles, plus 3 and 2 from other terms.
 VALUE = max(2 * FIT_LOSS, (4 + 3 + 2) * FIT_ANGLE)
 RHO = (0.0, 0.3, 0.8, 1.0)
 PARAMETERS = (0.0, 0.2, 0.7, 1.0)

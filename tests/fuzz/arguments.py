@@ -33,8 +33,8 @@ FILM = {"tint": np.ones(3), "ior": 1.5, "roughness": (0.5, 0.4), "thinfilm_thick
 PAIR, FIVE = (0.5, 0.4), np.array(5.0)
 LOBE = Bsdf(np.array(0.5), np.array(0.5))
 
-# Valid values by argument name; a function gets the first value that it accepts. Arguments that are
-# not listed keep their defaults, or get 0.5.
+# Valid values by argument name. A function gets the first value that the function accepts. All
+# other arguments keep their defaults, or get 0.5.
 COLOR, BSDF = ((0.5, 0.4, 0.3),), (LOBE,)
 VALID = {
     **dict.fromkeys(("wo", "wh", "normal"), ((0.6, 0.0, 0.8),)),
@@ -69,7 +69,7 @@ PLUMBING = (
     "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",
     "mxeon.models.surfaces",
-)  # prefixes of full names of functions that are not tested
+)  # prefixes of functions that are not tested
 TAKEN = (bool, str, float, int)  # argument types that get bad values, in addition to arrays
 
 ACCEPTED, REFUSED = 0, 2
@@ -128,7 +128,7 @@ def tried(function, arrays=False):
 
 
 def judged(row):
-    """Call the function of a test case; return ACCEPTED or REFUSED, and the fault or ""."""
+    """Call the function of a test case, and return ACCEPTED or REFUSED, and the fault or ""."""
     name, argument, place, inside = row
     function = functions()[name]
     values = dict(base(function))
@@ -150,7 +150,7 @@ def _part(values, argument):
 
 
 def answer(function, values):
-    """Call a function; return ACCEPTED or REFUSED, and the fault or ""."""
+    """Call a function, and return ACCEPTED or REFUSED, and the fault or ""."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     try:
@@ -169,7 +169,7 @@ def answer(function, values):
 
 
 def call(function, values):
-    """Call a function with arguments that are given by name, whatever the parameters' kinds."""
+    """Call a function with arguments by name, including arguments that are positional-only."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     named = {name: value for name, value in values.items() if name not in more}

@@ -161,7 +161,7 @@ def _inherited(count):
     return "".join(rows) + f'<i{count - 1} name="lobe" type="BSDF"/>'
 
 
-# Titles of cases, the nodes of each document, and the command.
+# Cases as title, nodes of the document, and command.
 ROWS = (
     ("a lobe in an input", f'<input name="i" type="float">{ROUGH}</input>', _generate("glsl")),
     ("a mix of one", f'<eon_diffuse_bsdf name="a" type="BSDF"/>{LEFT}', RENDER),
@@ -253,7 +253,7 @@ FILES = (
     "file:///etc/hostname", "link/documents/part1.glsl",
 )  # fmt: skip
 DEPTHS = (0, 1, 3, 15, 16, 400)
-BROUGHT = ("own.glsl", *FILES)  # files that an implementation element names
+BROUGHT = ("own.glsl", *FILES)  # files named by implementation elements
 
 LINKS = (("linked.glsl", "../secret.glsl"), ("zero.glsl", "/dev/zero"), ("pipe.glsl", ""))
 OTHERS = (
@@ -265,7 +265,7 @@ OTHERS = (
 
 
 def includes():
-    """Cases: implementation's file, form of include, included file, depth, target, function."""
+    """Cases as implementation's file, form of include, included file, depth, target, function."""
     for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
         yield "own.glsl", *row, 'function="own" '
     for name, target in product(BROUGHT, FUNCTIONS):

@@ -2,9 +2,8 @@
 """Lists the files that MaterialX itself opens while it generates shaders for the fuzzer's cases.
 
 strace reports all files that a process opens, and Python's audit hook reports the files that mxeon
-opens. MaterialX opened all other files, which must lie in the libraries or in the documents'
-folder. The control is a bare run, in which mxeon does not check sources. The control must report
-forbidden files.
+opens. Files that only strace reports were opened by MaterialX, and must lie in the libraries or in
+the documents' folder. A control run without mxeon's checks of sources must report forbidden files.
 """
 
 import codecs
@@ -26,7 +25,7 @@ from tests.fuzz.cases import case, cases
 from tests.fuzz.trial import trial
 
 ROOT = Path(__file__).resolve().parents[2]
-# Names of missing files. Opening these files marks the start and the end of the cases in the log.
+# Names of missing files, which are opened to mark the start and the end of the cases in the log.
 START, END = "/the cases begin here", "/the cases end here"
 MACHINE = ("/sys/devices/system/cpu/online",)  # the C library opens this file
 # Names of files that could make MaterialX wait forever.

@@ -28,7 +28,7 @@ ElementTree.register_namespace("xi", XI)
 EVERY = Path(__file__).with_name("every.mtlx")
 POISON = "poison"
 GAP = "gap00000gap"  # placeholder that is replaced by hostile text
-# Hostile texts. BREAKING texts end a string or a line; MEANING texts change what code means.
+# Hostile texts. BREAKING texts end a string or a line. MEANING texts change the meaning of code.
 BREAKING = tuple(each + POISON for each in ("\n#define ", "\r", '"', "\\", '\\"', "\x7f"))
 MEANING = tuple(each + POISON for each in (" ", "//", "/*", "*/", *";(),=#${-"))
 MARK = re.compile(r"mark\d{5}x|77\d{5}")
@@ -98,7 +98,7 @@ def absent(root):
 
 
 def reached(root, groups, targets=TARGETS):
-    """Attributes whose words occur in shader source, with the contexts: bare, quoted or comment."""
+    """Attributes whose words occur in shader source, with contexts: bare, quoted or comment."""
     found = defaultdict(set)
     for places in groups:
         _search(root, places, targets, found)
@@ -106,7 +106,7 @@ def reached(root, groups, targets=TARGETS):
 
 
 def unjudged(root, found, targets=TARGETS):
-    """Hostile texts that reach a shader, or whose refusal does not name the element."""
+    """Hostile texts that reach a shader, or that are refused without naming the element."""
     elements = list(root.iter())
     ways, alike = defaultdict(set), {}
     for place, each in found.items():
@@ -161,7 +161,7 @@ def _judged(element, place, document, targets):
 
 
 def _search(root, places, targets, found):
-    """Mark all places at once. If a target refuses the marked document, mark each half alone."""
+    """Mark all `places` at once. If a target refuses the document, mark each half separately."""
     refused = []
     text, marks = _marked(root, places)
     for target in targets:
@@ -207,7 +207,7 @@ def _context(before):
 
 
 def _marked(root, places):
-    """Text of a document with a mark in each attribute of `places`, and the place of each mark."""
+    """Text of a document with a mark in each attribute in `places`, and attributes by mark."""
     root, marks, aliases = deepcopy(root), {}, {}
     elements = list(root.iter())
     for place in places:
@@ -226,7 +226,7 @@ def _marked(root, places):
 
 
 def _word(old, number, place):
-    """New value of the same kind as the old value, and the mark inside the new value."""
+    """A marked value of the same kind as an old value, and the mark."""
     if old.strip().isdigit():
         return f"77{number:05}", f"77{number:05}"
     mark = f"mark{number:05}x"

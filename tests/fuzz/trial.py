@@ -18,8 +18,8 @@ from tests.fuzz.documents import CANARY, POISON
 
 STATUSES = (0, 2, 3)
 OUTPUTS = ("--outputPath", "--output", "--report")
-# MAKING: commands that render or generate in worker processes, which would hide crashes. JUDGING:
-# commands that may exit with status 1 if a check fails.
+# MAKING commands use worker processes, which would hide crashes. JUDGING commands may exit with
+# status 1 if a check fails.
 MAKING = ("generate", "render")
 JUDGING = ("check", "kit", "report", "render", "library")
 LONGEST_LINE = 1200  # maximum characters of a message (1000), its prefix, and a path
@@ -33,7 +33,7 @@ def judged(tried):
 
 
 def trial(tried):
-    """Run a case; return the exit status, and one line with all forbidden effects or ""."""
+    """Run a case, and return the exit status and one line with all forbidden effects or ""."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)
@@ -66,7 +66,7 @@ def _prepared(root, tried):
     (home / "results.json").write_text('{"format": 5, "results": [{"host": "gl"}], "pictures": []}')
     for name, text in AROUND:
         (root / name).write_text(text)
-    if tried.arguments[:1] == ("render",):  # the command `render` does not create folders
+    if tried.arguments[:1] == ("render",):  # `render` does not create folders
         (home / OUT).mkdir()
     for name, data in tried.files:
         (home / name).parent.mkdir(parents=True, exist_ok=True)
@@ -78,7 +78,7 @@ def _prepared(root, tried):
 
 
 def _called(arguments, encoding):
-    """Run a command; return the exit status or a traceback, the output and the error output."""
+    """Run a command, and return the exit status or a traceback, the output and the error output."""
     from mxeon.cli import main
 
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding, newline="") for _ in range(2))

@@ -50,7 +50,7 @@ def emit(statement):
 
 
 def lit(scene):
-    """Masks of pixels: away from the rim and terminator, and with dot(wo, wi) < mu_o mu_i."""
+    """Masks of pixels away from rim and terminator, and of pixels with dot(wo, wi) < mu_o mu_i."""
     points = sphere(scene.size)
     light = np.asarray(scene.light)
     mu_o, mu_i = points.normal[..., 2], points.normal @ light

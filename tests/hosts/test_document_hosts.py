@@ -21,8 +21,8 @@ HOSTS = {"storm": storm.StormHost, "materialx": materialx.MaterialXHost}
 DOCUMENT = examples_folder() / "eon_node.mtlx"
 SMALL = replace(FRONT, size=16)
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-# Errors of pixels stored as half floats: two roundings of 2^-11 in a value under direct light, and
-# twice as many under an environment.
+# Errors of pixels stored as half floats: two roundings of 2^-11 in direct light, and four in an
+# environment.
 HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
 TEXTURED = 2.0**-8  # OpenGL guarantees this precision of filter weights
 

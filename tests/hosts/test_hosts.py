@@ -27,8 +27,8 @@ from tests.support.wrong_libraries import GLSL, wrong_stock
 HOSTS = ("gl", "webgl", "vulkan", "wgsl", "slang")
 COUNT = 20_000
 PAIR = np.array([[0.6, 0.0, 0.8]])
-# SAMPLES_64: weight of a single sample in an albedo from 64 samples. BETWEEN_TEXELS: errors of
-# interpolated albedos, in general and on slang, which reads the nearest texel.
+# SAMPLES_64 is the weight of a sample in an albedo from 64 samples. BETWEEN_TEXELS has the errors
+# of interpolated albedos on most hosts, and on slang, which reads the nearest texel.
 SAMPLES_64, BETWEEN_TEXELS = 1.0 / 64.0, (1e-3, 0.01)
 
 
@@ -150,7 +150,7 @@ def test_an_integer_of_the_text_is_the_boolean_that_it_was(hosts):
 
 
 def tabled(host, library):
-    """Compile a metal that looks up its albedo in a table; return the shader and the table."""
+    """Compile a metal with a table of albedos, and return the shader and the table."""
     text = material(lobe("conductor_bsdf", roughness=(0.6, 0.6)))
     [shader] = host.compile(text, library=library, methods=Methods("prefilter", albedo="table"))
     [texels] = host.table(shader).values()

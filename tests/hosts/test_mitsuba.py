@@ -85,7 +85,7 @@ def chi_square(mi, angle, functions):
         sample_dim=3,
         sample_count=SAMPLES,
         res=31,
-        ires=8,  # the default, 4 nodes per bin, misses a grazing peak
+        ires=8,  # the default of 4 nodes per bin misses a grazing peak
     )
 
 
@@ -231,7 +231,7 @@ def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch)
         if "coated.png" in block or "ball.png" in block:
             seen.append(brightest(names["picture"]))
     assert 0.1 < np.array(names["picture"]).mean() < 1.0
-    # The lamp makes the brightest block 1.5 times as bright.
+    # With the lamp, the brightest block is 1.5 times as bright.
     assert seen[1] > 1.25 * seen[0]
     for name in ("clay", "ball", "coated"):
         assert (tmp_path / f"{name}.png").stat().st_size > 1000

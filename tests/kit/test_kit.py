@@ -75,7 +75,7 @@ def write_kit(folder):
 
 
 def write_pictures(folder, true="eon", false="qon", noise=0.0, seed=1):
-    """Write a kit with pictures of two models; `noise` is the relative noise of each pixel."""
+    """Write a kit with pictures of two models. `noise` is the relative noise of each pixel."""
     rng = np.random.default_rng(seed)
     write_kit(folder)
     for view in VIEWS.values():
@@ -262,7 +262,7 @@ def test_the_command_exports_and_judges(tmp_path, capsys):
 
 
 def write_osl(kit, library, profile):
-    """Generate OSL for each material document of a kit; return the folder of the OSL files."""
+    """Generate OSL for each material document of a kit, and return the folder."""
     header = mx.getDefaultDataSearchPath().find("libraries/stdlib/genosl/include/mx_funcs.h")
     folder = kit / "osl"
     folder.mkdir()
@@ -276,7 +276,7 @@ def write_osl(kit, library, profile):
 
 
 def external_run(kit, library, profile=None):
-    """Export a kit, render the kit with Cycles, and return the run that judges the pictures."""
+    """Export a kit, render the kit with Cycles, and return the run of the checks."""
     with available("cycles"):
         python = interpreter()
     export_kit(kit, SIZE)

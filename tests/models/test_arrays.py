@@ -49,11 +49,10 @@ WIDTH = 1e-4  # step of the finite differences
 OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)
 RELIABLE = 2e-8  # largest difference between the two step widths, for a reliable derivative
 COMPARED = 0.6  # minimum fraction of partial derivatives that must be compared
-# Two functions have smaller minimum fractions of compared derivatives. The curve of a film is
-# clamped at thousands of nodes, which causes kinks, and the root in `diffusion_blur` amplifies the
-# rounding of differences.
+# Two functions have smaller minimum fractions. The curve of a film is clamped at thousands of
+# nodes, which causes kinks. In `diffusion_blur`, a root amplifies the rounding of differences.
 CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0}
-NOISE = {"diffusion_blur": 2e-8}  # error of the root of a difference that is rounded to 2^-53
+NOISE = {"diffusion_blur": 2e-8}  # root of a difference with an error of 2^-53
 VALUE = 1e-12  # difference between libraries, divided by the larger of 1 and the value
 
 
@@ -117,7 +116,7 @@ def film_schlick(
 
 PORTABLE |= {each.__name__: each for each in (film_conductor, film_schlick)}
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
-# Ends of the tested ranges, where an input has no limit or a slope diverges at the limit.
+# Ends of tested ranges for inputs that are unbounded, or at whose limit a slope diverges.
 LOW = dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
 LOW |= dict.fromkeys(("separation", "radius", "reach"), 0.2)
 LOW |= {"temperature": 500.0, "melanin_concentration": 0.0}
@@ -156,8 +155,8 @@ def pytorch():
 def jax():
     library = package("jax")
     library.config.update("jax_enable_x64", True)
-    # Optimization takes longer than a single call saves. XLA's emitters of fused loops take twice
-    # as long as all other steps. If modules are not split, shared code is compiled only once.
+    # The options make compilation fast. Emitters of fused loops would take twice as long as all
+    # other steps. Without splitting of modules, shared code is compiled only once.
     library.config.update("jax_disable_most_optimizations", True)
     options = {"xla_cpu_use_fusion_emitters": False, "xla_cpu_parallel_codegen_split_count": 1}
     jit = partial(library.jit, compiler_options=options)
@@ -200,7 +199,7 @@ def directions(rng, below, rows=ROWS):
 
 
 def sampled(function):
-    """Random array arguments, inside their ranges or at an end, and other arguments, by name."""
+    """Random array arguments inside or at the ends of ranges, and other arguments, by name."""
     rng, arrays, switches, rows = np.random.default_rng(SEED), {}, {}, count(function)
     values, names = dict(arguments.base(inspect.unwrap(function))), table.arrays(function)
     if has_mapping(function):
@@ -236,7 +235,7 @@ def sampled(function):
 
 
 def whole(value):
-    """Stack a tuple of results, such as a sampler's direction and density, into a single array."""
+    """Stack a tuple of results, such as a sampler's direction and density."""
     if not isinstance(value, tuple):
         return value
     w, pdf, *others = value
@@ -254,7 +253,7 @@ def scalar(value, axes=1):
 
 
 def moved(function, arrays, switches, name):
-    """Values of `scalar` by offset, when the offset is added to each component of an array."""
+    """Values of `scalar` by offset, where the offset is added to each component of an array."""
     array = arrays[name]
     rows, size = len(array), array[0].size
     several = np.tile(array.reshape(rows, size), (size, len(OFFSETS), 1, 1))

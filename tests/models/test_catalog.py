@@ -54,7 +54,7 @@ def test_inputs_have_the_names_order_and_defaults_of_the_definition(category):
 def test_inputs_are_in_the_order_of_their_node(name):
     row = MODELS[name]
     names = [each.name for each in row.parameters]
-    order = list(DEFAULTS.get(row.node, names))  # layered models have no MaterialX defaults
+    order = list(DEFAULTS.get(row.node, names))  # layered models are not MaterialX nodes
     assert names == sorted(names, key=order.index)
     for each in row.parameters:
         low, high = each.interval
@@ -85,8 +85,8 @@ def test_every_drawn_direction_has_a_value_and_its_density(name):
     value, below = row.bsdf(wo, wi, **inputs), wi[:, 2] < 0.0
     if row.lights != "all sides":
         assert not value[below if row.lights == "front" else ~below].any()
-    # The mean weight equals the albedo. The integral of the density above the horizon and the
-    # fraction of samples below the horizon add up to 1.
+    # The mean weight equals the albedo. The density's integral above the horizon, plus the fraction
+    # of samples below the horizon, is 1.
     cosine = 1.0 if name == "hair" else np.abs(wi[:, 2:])
     weights = value * cosine / pdf[:, np.newaxis]
     error = np.abs(weights.mean(axis=0) - row.albedo_dir(0.4, **inputs))

@@ -25,8 +25,8 @@ from tools.fits.varnish_walk import RHO, model_bins, walk, walked_bins
 
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
 VARNISH = {"alpha": 0.3, "ior": 1.5}
-# Error of the average albedo of each interface. For a varnish, 2e-5 is the error of curves with 28
-# nodes at alpha 0.01 and an index of refraction of 1.02.
+# Error of the average albedo of each interface. Curves of a varnish with 28 nodes have an error of
+# 2e-5 at alpha 0.01 and an index of refraction of 1.02.
 INTERFACES = {"dielectric_over_eon": COAT, "varnished": 2e-5}
 every_interface = pytest.mark.parametrize("name", INTERFACES)
 COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0, 9))
@@ -146,8 +146,7 @@ def test_light_that_walks_has_the_albedo_and_under_a_layer_another(ior, alpha, r
     assert (error < WALKED + noise).all() and error[-1] < 1e-4
     off = models.dielectric_over_eon_albedo_dir(*inputs) - total.mean(axis=0)
     assert off[2] > WALKED + noise[2]
-    # Compare the light in twelfths of the hemisphere. The control, with an index of refraction of
-    # 1, must fail.
+    # Compare the light in twelfths of the hemisphere. The comparison must fail for an IOR of 1.
     walked = walked_bins(total, out)
     noise = deviate * np.sqrt(walked_bins(total**2, out) / PATHS) / walked
     for n, right in ((ior, True), (1.0, False)):

@@ -18,8 +18,8 @@ MOMENT = 1e-10  # error of the quadrature in `moments`
 def moments(g):
     """Integrals of the phase function, and of the phase function times the cosine, over the sphere.
 
-    Nodes are uniform in log(1 - cos) for g >= 0 and in log(1 + cos) for g < 0, so they are dense at
-    the peak.
+    Nodes are uniform in log(1 - cos) for g >= 0 and in log(1 + cos) for g < 0, and so are
+    dense at the peak.
     """
     x, w = np.polynomial.legendre.leggauss(400)
     low = np.log((1.0 - abs(g)) ** 2 * 1e-12)
@@ -164,8 +164,8 @@ def inputs_of(row, count):
 
 @pytest.mark.parametrize("reach", [0.05, 0.4, 3.0])
 def test_a_blur_is_the_profile_s_mean_over_the_unit_sphere(reach):
-    # On the unit sphere, a ring at chord length d has the area 2 pi d dd. The factor d cancels the
-    # factor 1 / d of the diffusion profile.
+    # On the unit sphere, a ring at the chord length d has the area 2 pi d dd, in which d cancels
+    # the factor 1 / d of the diffusion profile.
     x, w = np.polynomial.legendre.leggauss(400)
     d = 1.0 + x
     w = w * (np.exp(-d / reach) + np.exp(-d / (3.0 * reach)))

@@ -212,7 +212,7 @@ def test_defects_agree_with_the_specification_where_they_should():
 
 ALPHA = np.geomspace(1e-4, 1.0, 9)
 MU = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 13), 1.0 - np.geomspace(1e-12, 0.1, 4)]))
-CUBICS = 5e-13  # twice the rounding error of (1 - E_ss) / E_ss
+CUBICS = 5e-13  # difference of two values with rounding errors
 EXACT = {"epsabs": 1e-13, "epsrel": 1e-12, "limit": 200}
 
 

@@ -122,8 +122,8 @@ def test_a_mirror_reflects_all_light_and_prefiltered_what_the_fit_says(row):
 def test_the_fits_of_materialx_have_the_values_of_its_shaders():
     grazing = np.array([[1.0, 0.0, 1e-7]])
     rough = {"roughness": np.ones(1), "color": np.ones((1, 3))}
-    # The gl host returned 0.230783895 for a sheen albedo times the tint 0.42389375. 1.55754 is a
-    # constant in MaterialX's fit of the Burley albedo.
+    # 0.230783895 is a sheen albedo times the tint 0.42389375, as returned by the gl host. 1.55754
+    # is a constant in MaterialX's fit of the Burley albedo.
     sheen = materialx_fits.conty_kulla_albedo(grazing, rough)
     np.testing.assert_allclose(sheen, 0.230783895 / 0.42389375, rtol=PRINTED)
     np.testing.assert_allclose(materialx_fits.burley_albedo(grazing, rough), 1.55754, rtol=PRINTED)

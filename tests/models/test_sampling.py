@@ -201,11 +201,11 @@ def test_chi_square_tells_the_samplers_apart(mu):
 
 # --- throughput weights ----------------------------------------------------------------------
 
-# The weight of a sample at unit reflectance is f cos(theta_i) / p and has the mean 1. The exact
-# sampler returns a density p for which every weight is 1. The tests below replace p by the true
+# The weight of a sample at unit reflectance is f cos(theta_i) / p and has the mean 1. With the
+# density p that the exact sampler returns, every weight is 1. The tests below replace p by the true
 # density of the samples, which differs slightly because the sampler uses two fits, MULTIPLE and
-# UPPER. The variable of each fit is a root of a random number. ROOTS holds values of this variable,
-# dense at both ends of [0, 1].
+# UPPER. The variable of each fit is a root of a random number. ROOTS holds values of the variable,
+# which are dense at both ends of [0, 1].
 ROOTS = np.sin(0.5 * np.pi * (np.arange(4001) + 0.5) / 4001) ** 2
 
 
@@ -226,21 +226,21 @@ def test_mean_weight_is_one(name, mu, roughness):
 
 
 def multiple_error():
-    """Cosines drawn by the fit MULTIPLE, and the relative error of their density."""
+    """Cosines sampled by the fit MULTIPLE, and the relative error of the density."""
     w = Polynomial([0.0, 1.0])
     a, b, c, d, e, f = sampling.MULTIPLE
     t = 1.0 - w**2
     mu = t * (1.0 + w**2 * (a + w**2 * (b + w * (c + w * (d + w * (e + w**4 * f))))))
     cosines = sampling.eon_multiple_cosine(t(ROOTS))
     np.testing.assert_allclose(cosines, mu(ROOTS), atol=tolerances.DIRECTION)
-    # The random number is t^3 = (1 - w^2)^3, and its derivative is -6 w t^2.
+    # The random number is t^3 = (1 - w^2)^3, with the derivative -6 w t^2.
     slope = mu.deriv()(ROOTS) / (-6.0 * ROOTS * t(ROOTS) ** 2)
     density = 2.0 * diffuse.fon_loss_mu(mu(ROOTS)) * mu(ROOTS) / (diffuse.C1 - diffuse.C2)
     return mu(ROOTS), 1.0 / (slope * density) - 1.0
 
 
 def upper_error(mu_o):
-    """Cosines drawn by the fit UPPER, and the relative error of their density."""
+    """Cosines sampled by the fit UPPER, and the relative error of the density."""
     y = Polynomial([0.0, 1.0])
     fit = y * (1.0 + (1.0 - y) * Polynomial(sampling.UPPER))
     S_o = np.sqrt((1.0 - mu_o) * (1.0 + mu_o))

@@ -146,5 +146,5 @@ def test_transmission_is_lamberts():
 
 
 def test_the_rule_of_conty_kulla_integrates_what_ends_in_a_root():
-    x, weights = _rule.__wrapped__()  # other tests may have cached the quadrature rule
+    x, weights = _rule.__wrapped__()  # bypasses the cache
     np.testing.assert_allclose([weights.sum(), weights @ np.sqrt(x)], [1.0, 2.0 / 3.0], rtol=1e-10)

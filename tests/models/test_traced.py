@@ -20,9 +20,9 @@ from tests.support.cases import direction
 from tests.support.tracing import untraced
 
 SEED, ROWS = 5, 3
-STEP, SLOPE = 1e-5, 3e-5  # step of central differences, and error of the differences near a kink
+STEP, SLOPE = 1e-5, 3e-5  # step of central differences, and error near a kink
 VALUE = 1e-11  # absolute and relative tolerance for values
-# INSIDE: ranges of random inputs, by default [0.3, 0.7]. ENDS: ends of ranges, by default 0 and 1.
+# INSIDE has ranges of random inputs (default: [0.3, 0.7]). ENDS has ends of ranges (0 and 1).
 INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}
 INSIDE |= {"thinfilm_ior": (1.2, 1.9), "exponent": (2.0, 6.0), "coat_ior": (1.2, 2.0)}
 INSIDE |= dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.6))
@@ -66,7 +66,7 @@ def inside(row):
 def at_ends(row, function):
     """Calls with all inputs at an end of their ranges.
 
-    If inputs may differ between rows, the call also contains cases with one input at an end.
+    If inputs may differ between rows, the call also contains rows with one input at an end.
     """
     middle, ends = inside(row), {}
     for each in row.parameters:
@@ -153,9 +153,9 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
 @pytest.mark.whole
 @pytest.mark.parametrize(("name", "function"), TRACED)
 def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
-    """JAX traces the functions but does not compile them, which would take minutes.
+    """JAX traces the functions without compilation, which would take minutes.
 
-    Forward mode takes a third of the time of reverse mode, which transposes the same steps.
+    Forward mode takes a third of the time of reverse mode.
     """
     jax = package("jax")
     jax.config.update("jax_enable_x64", True)

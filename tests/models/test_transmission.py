@@ -109,7 +109,7 @@ def around(wo, cosine, count):
 @pytest.mark.parametrize("alpha", [(0.5, 0.5), (1.0, 1.0), (0.3, 0.6)])
 @pytest.mark.parametrize("mu", [1.0, 0.9])
 def test_the_transmittance_below_index_1_is_a_sum_over_the_critical_cone(mu, alpha, shadow):
-    # All facets that transmit light lie within 30 degrees of the view and send the light down.
+    # All facets that transmit light lie within 30 degrees of the view and refract light downwards.
     ior, wo = 0.5, np.array(direction(mu, 0.4))
     least = np.sqrt(1.0 - ior**2)
     x, w = np.polynomial.legendre.leggauss(64)

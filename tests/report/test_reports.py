@@ -117,7 +117,7 @@ ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
 def errors(*regions, samples="a", **changes):
-    """Error fields of a result: ALL with the given changes, for all samples and for each region."""
+    """Error fields of a result for all samples and for each region: ALL with the given changes."""
     whole, *parts = ({**changes}, *regions)
     found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
     return {"errors": found, "samples": samples}
@@ -252,8 +252,8 @@ PLANTED = {
 }  # fmt: skip
 
 
-# Stock MaterialX is too bright in some samples, which these regressions darken. Undoing a
-# regression therefore raises the errors of these samples.
+# Stock MaterialX is too bright in some samples, which these regressions darken. If a regression is
+# undone, the errors of these samples increase.
 HIDING = ("transmission tinted by color0", "dark hair for some", "another range of blackbodies")
 
 

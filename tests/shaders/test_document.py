@@ -135,7 +135,7 @@ def test_bad_nodes_are_refused_with_their_names(nodes, rule):
 
 
 def warned(text, **options):
-    """The only warning that is issued while the shaders of a document are generated."""
+    """Generate the shaders of a document, and return the only warning."""
     with pytest.warns(DocumentWarning) as caught:
         assert generate(text, "glsl", **options)
     [message] = [str(each.message) for each in caught]

@@ -60,8 +60,7 @@ def test_the_shaders_of_every_node_of_a_copy_compile(copy, tmp_path, version):
     output(program("glslangValidator"), *shaders)
 
 
-# In all tested versions except the last, GLSL adds the transmission of a medium to the transmission
-# of the layer above the medium.
+# In older versions, GLSL adds the transmission of a medium to the transmission of the layer above.
 MEDIA = dict.fromkeys(TESTED[:-1], "transmittance, ")
 
 

@@ -63,7 +63,7 @@ def host(request, hosts):
 
 
 def brightness(host, nodes, **values):
-    """Brightness of a material in a white furnace; `values` maps paths of inputs to values."""
+    """Brightness of a material in a white furnace. `values` maps paths of inputs to values."""
     found = generate(material(nodes), host.target, lights=True, policy=TRUSTED)[0]
     inputs = (replace(each, value=values.get(each.path, each.value)) for each in found.inputs)
     shader = replace(found, inputs=tuple(inputs))

@@ -13,7 +13,7 @@ from tests.support.documents import lobe, material, refusal, written
 from tests.support.sharing import shared
 
 SOME = ("glsl", "osl", "mdl")  # one target per family of shader generators
-CLASSES = (*SOME, "msl", "slang")  # essl, vulkan and wgsl use the generator class of glsl
+CLASSES = (*SOME, "msl", "slang")  # one target per generator class
 IMAGE = '<image name="image" type="color3"><input name="{}" type="{}" value="{}"/></image>'
 KINDS = [kind for kind in vars(mx).values() if hasattr(kind, "CATEGORY")]
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Skips tests whose host, program or package is missing. MXEON_REQUIRE can demand a failure.
+"""Skips tests whose host, program or package is missing, or fails if MXEON_REQUIRE names it.
 
-MXEON_REQUIRE is a comma-separated list of hosts. In this list, `packages` stands for all programs
-and Python packages. `./run test --all` sets this list to everything that the command installs.
+MXEON_REQUIRE is a comma-separated list of hosts, in which `packages` stands for all programs and
+Python packages. `./run test --all` lists everything that the command installs.
 """
 
 import os

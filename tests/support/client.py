@@ -45,7 +45,7 @@ def shader(library, row, path):
 
 
 def rendered(document, definition):
-    """Add a node and its operands; return the node, or a surface if the node is a closure."""
+    """Add a node and its operands, and return the node, or a surface if the node is a closure."""
     # Add the node, and operands if the node combines lobes.
     kind = definition.getType()
     node = document.addNode(definition.getNodeString(), "node", kind)

@@ -87,7 +87,7 @@ def import_all() -> None:
 
 
 def main() -> None:
-    """Run everything, and exit at the first command with an unexpected status."""
+    """Import all modules and run all commands. Exit at the first unexpected status."""
     hide()
     import_all()
     import numpy as np

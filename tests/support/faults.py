@@ -17,7 +17,7 @@ def square(item):
 
 
 def misbehave(item):
-    """Fail in the way that the item names, or return the square if the item is a number."""
+    """Fail as the item says, or return the square if the item is a number."""
     if isinstance(item, int):
         return square(item)
     print(f"about to {item}", file=sys.stderr, flush=True)

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
-from scipy import special  # scipy.stats would be slow to import
+from scipy import special  # importing scipy.stats is slow
 
 from tools.paper.samplers import SAMPLERS
 
@@ -36,7 +36,7 @@ def directions(theta, phi):
 
 def hemisphere(mu, count=64):
     """Quadrature directions and solid angles. Panels end where EON has kinks for a view at `mu`."""
-    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # the minimum clips a rounding error
+    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # rounding may exceed a right angle
     theta, dtheta = rule(np.unique([0.0, kink, 0.5 * np.pi]), count)
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi

@@ -38,9 +38,9 @@ SHEEN = (40 + 2 * FUNCTION + 10) * ROUNDING
 # and the error of s grows by the 9 roundings of S_o S_i.
 ROTATION = BRDF + 12.0 * ROUNDING
 
-# Absolute error of the approximate loss, [Portsmouth2025], Eq. (14), and factor of this error in
-# each function. eon_brdf_approx, in units of 1 / pi, contains the product of two losses, each at
-# most c1 = 0.288, with the factor rho^2 r A (1 + c2 r) / ((c1 - c2) D) <= 3.61.
+# Absolute errors of the approximate loss, [Portsmouth2025], Eq. (14), and of functions of the loss.
+# eon_brdf_approx, in units of 1 / pi, contains the product of two losses, each at most
+# c1 = 0.288, with the factor rho^2 r A (1 + c2 r) / ((c1 - c2) D) <= 3.61.
 # fon_albedo_dir_approx contains one loss with the factor r A <= 0.777. eon_albedo_dir_approx
 # contains one loss with the factor rho (1 - rho) r / D <= 0.213.
 QUARTIC_LOSS = 6.03e-4
@@ -48,16 +48,15 @@ QUARTIC_BRDF = 2 * 3.61 * 0.288 * QUARTIC_LOSS
 QUARTIC_FON_ALBEDO = 0.777 * QUARTIC_LOSS
 QUARTIC_EON_ALBEDO = 0.213 * QUARTIC_LOSS
 
-# Difference between eon_brdf_approx and Listing 1, in units of 1 / pi. Listing 1 clamps each 1 - E
-# to at least 1e-7. One clamp changes the result by c1 / (c1 - c2) = 1.34 times 1e-7. Two clamps
-# change the result by 1e-14 divided by 1 - <E> > 1.6e-6.
+# Difference between eon_brdf_approx and Listing 1, in units of 1 / pi. Listing 1 clamps each
+# 1 - E to at least 1e-7. One clamp changes the result by c1 / (c1 - c2) = 1.34 times 1e-7.
+# Two clamps change the result by 1e-14 / (1 - <E>), where 1 - <E> exceeds 1.6e-6.
 LISTING_EPSILON = 1.34 * 1e-7 + 1e-14 / 1.6e-6
 
 # --- fits --------------------------------------------------------------------------------------
 
 # Largest relative errors of fits, as stated next to the published coefficients and rounded up.
-# EON_DENSITY is the error of the density of exact samples, which use two fits, and holds for the
-# worse fit.
+# EON_DENSITY is the larger error of the two fits in the exact sampler.
 FIT_LOSS = 2.7e-7
 FIT_LOSS_32 = 5.4e-7
 FIT_ROOT = 1.8e-7
@@ -76,13 +75,12 @@ FIT_ANGLE = 1.9e-8 + 0.6e-8
 TWIN_ALBEDO = 1e-6
 TWIN_VALUE = 2e-6
 
-# Error e of a normal in Cycles (float32). A point of the sphere is the sum of a ray's origin and a
-# vector along the ray, both of length <= 2, and has three roundings. The error is e / mu for a ray
-# at the cosine mu, so the test multiplies by mu.
+# Error of a normal in Cycles (float32), times the cosine of the ray. A point of the sphere is the
+# sum of a ray's origin and a vector along the ray, both of length <= 2, and has three roundings.
 CYCLES_NORMAL = 3 * 2.0 * ROUNDING_32
 
 # Relative error of a picture of EON where both cosines exceed 0.1: 6 roundings divided by the
-# product of the cosines, plus 1e-5 caused by the roughness.
+# product of both cosines, plus an error of 1e-5 due to the roughness.
 CYCLES_RIM = 0.1
 CYCLES_EON_RELATIVE = 6 * ROUNDING_32 / CYCLES_RIM**2 + 1e-5
 
@@ -100,20 +98,20 @@ CYCLES_SUBSURFACE = 0.011 + 2 * 0.05 / 208**0.5
 PDF = 20.0 * ROUNDING
 
 # Absolute error of the components and of the squared length of a sampled direction. Each component
-# has 12 roundings, two function calls, and half the error of the length. All errors are counted
-# twice, and the sums have a few more roundings.
+# has 12 roundings, two function calls, and half the error of the length. The tolerance counts all
+# errors twice.
 DIRECTION = 72.0 * ROUNDING
 
-# Error of directions sampled for a rotated view, because the sine of the view is rounded again.
-# Sampling stretches this error, as in float32. On average 1 of 1000 samples exceeds the tolerance,
-# and more than 10 samples exceed the tolerance with probability 1e-8.
+# Error of directions sampled for a rotated view. Sampling amplifies the rounding of the view's
+# sine. Of 1000 samples, one exceeds the tolerance on average, and more than 10 with probability
+# 1e-8.
 TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 
 # Relative difference between the density returned with a sample and the density computed from the
-# sample's direction. Both computations divide the third or fourth power of a length or of its
-# square (6 roundings each) by det M, a difference of terms <= 1.6 that is at least 0.91. Near the
-# boundary of CLTC, the density is a difference with an absolute error of DIRECTION.
+# sample's direction. Each computation has 4 (6 + 6) roundings in a fourth power, 6 x 1.8
+# roundings in det M, which is a difference of terms <= 1.6 and at least 0.91, and 20 other
+# roundings. Near the boundary of CLTC, the density also has an absolute error of DIRECTION.
 SAMPLE_PDF = 2 * (4 * (6 + 6) + 6 * 1.8 + 20) * ROUNDING
 
 # Absolute error of a density if its sample has the error TURNED_DIRECTION. At mu_o = 0.3, |s / t|
@@ -122,17 +120,17 @@ SAMPLE_PDF = 2 * (4 * (6 + 6) + 6 * 1.8 + 20) * ROUNDING
 TURNED_PDF = (1 + 2 * 3.2) / pi * TURNED_DIRECTION
 
 # Relative error of the height of a clipped cosine, which is the root of a product of positive
-# terms. The root halves the errors of four roundings in the chord's ends and six in the terms, and
-# adds one rounding.
+# terms. The root halves four roundings in the chord's ends and six roundings in the terms, and adds
+# one.
 RIM = (0.5 * (4 + 6) + 1) * ROUNDING
 
 # Absolute error of the side of the lune. The coordinates x and z are at most 1 and have 4
 # roundings, a function call, and the error RIM.
 LUNE = (4 + FUNCTION) * ROUNDING + RIM
 
-# Absolute error of the integral of a density with a kink: h^2 / 12 per unit of length. The boundary
-# of CLTC, at most pi long, crosses Gauss panels whose nodes are h <= pi/2 / 64 apart. Across the
-# boundary, the slope of the density per radian jumps by at most 1 per steradian.
+# Absolute error of the integral of a density with a kink: h^2 / 12 per unit of length. The
+# boundary of CLTC, at most pi long, crosses Gauss panels whose nodes are h <= pi/2 / 64 apart.
+# At the boundary, the slope of the density jumps by at most 1 per steradian and radian.
 KINK_QUADRATURE = (pi / 2 / 64) ** 2 / 12 * pi
 
 # RHO is the relative error of an inverted albedo, whose longest chain has 11 roundings. ROUND_TRIP
@@ -143,7 +141,7 @@ ROUND_TRIP = 1e-14
 
 # --- pictures ----------------------------------------------------------------------------------
 
-# Error of an OpenGL picture times cos(theta_o): 16 roundings of a pixel's point, 32 of the value.
+# Error of an OpenGL picture times cos(theta_o): 16 roundings in a pixel's point, 32 in the value.
 PICTURE = (16 + 32) * ROUNDING_32
 
 # Maximum number of 200 kits with pure noise that may be judged biased. Each kit has a false-alarm
@@ -171,7 +169,7 @@ FIT_CONTY_KULLA = 1.51e-3 + 1e-5
 FIT_QUADRATURE = 1e-7
 
 # Relative error of the Fresnel reflectance of a dielectric, and of its average, for an index of
-# refraction >= 1. A sum has at most 40 roundings and a logarithm, and its terms are at most four
+# refraction >= 1. A sum has at most 40 roundings and a logarithm. The terms are at most four
 # times as large as the sum.
 FRESNEL = 4.0 * (40 + FUNCTION) * ROUNDING
 
@@ -186,8 +184,7 @@ CONDUCTOR = 1e-12
 E_SS = 1e-10
 E_SS_SMALL = 2e-8
 SLOPES = 5e-6
-# Error of an albedo for an index of refraction below 1, at roughnesses where adaptive quadrature
-# has an error of 1e-13.
+# Error of an albedo for an index of refraction below 1: 100 times the error of adaptive quadrature.
 SPLIT = 100 * 1e-13
 
 # --- transmission, float64 ---------------------------------------------------------------------
@@ -207,13 +204,14 @@ REVERSED = 5e-5
 # Relative error of a BTDF: 64 roundings, which D may amplify by 1 / alpha, where alpha is 0.3.
 MITSUBA_BTDF = 64 * ROUNDING_32 / 0.3
 
-# Errors of EON, FON and QON. MITSUBA_EVAL: the value times cosine is at most 1 / pi and has about
-# 15 roundings. MITSUBA_WEIGHT: a sample's weight is a quotient of two such values, off by 3.6e-7.
+# Errors of EON, FON and QON. MITSUBA_EVAL is the error of the value times cosine, which is at most
+# 1 / pi and has about 15 roundings. MITSUBA_WEIGHT is the error of a sample's weight, a quotient
+# of two such values.
 MITSUBA_EVAL = 3e-7
 MITSUBA_WEIGHT = 1e-6
-# Relative error of a dielectric over EON, where this error exceeds MITSUBA_EVAL. The 24 roundings
-# belong to the facets' distribution (a fourth power and a square), to two squares in Fresnel's
-# equations, to the visibility, and to sums of the curves. The measured error is 1.0e-6.
+# Relative error of a dielectric over EON, where this error exceeds MITSUBA_EVAL. The facets'
+# distribution, two squares in Fresnel's equations, the visibility, and sums of the curves have 24
+# roundings. The measured error is 1.0e-6.
 MITSUBA_COAT = 24 * ROUNDING_32
 # Additional relative error of the density of a dielectric over EON. The fraction of samples that
 # the dielectric reflects is computed from an albedo, whose relative error is 2e-7 from the curve

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Judges one check of one node, or one document, like a run does, and searches diagnoses."""
+"""Judges a check of a node, or a document, as in a run, and searches diagnoses."""
 
 from mxeon.conformance import words
 from mxeon.conformance.run.judge import Judge

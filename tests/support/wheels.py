@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs modules with other versions of MaterialX, whose folders come first on Python's path.
+"""Runs modules with other versions of MaterialX by putting folders first on Python's path.
 
 Each version is downloaded once and stored in `out/materialx`, which git ignores.
 """
@@ -32,7 +32,7 @@ def wheel(version):
     skipped.
     """
     if version == mx.getVersionString():
-        return ROOT  # this folder contains no MaterialX, so Python imports the installed version
+        return ROOT  # a folder without MaterialX, so Python imports the installed version
     name = f"main-{sha256(MAIN.read_bytes()).hexdigest()[:12]}" if version == "main" else version
     folder = KEPT / name
     if not folder.is_dir():
