@@ -5,7 +5,7 @@
 // local frame, x is the fiber and z is the normal.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
-#include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 
 // Scaled Bessel function exp(-x) I_0(x) for x >= 0: [AbramowitzStegun1964], 9.8.1 and 9.8.2.
 // Relative error: 5e-7.

@@ -3,7 +3,7 @@
 // the surface.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
-#include "libraries/pbrlib/genglsl/lib/mx_microfacet_diffuse.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 #include "lib/subsurface_blur.glsl"
 
 void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 radius,

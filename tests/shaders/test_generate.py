@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import warnings
 from dataclasses import replace
+from pathlib import Path
 
 import MaterialX as mx
 import MaterialX.PyMaterialXGenGlsl as mx_glsl
@@ -184,6 +185,20 @@ def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
     names = [name for text in texts for name in re.findall(NAMES, text)]
     found = [name for name in names if name.endswith((*ports,))]
     assert found == ["thin_film_weight", "hair_scale"]
+
+
+def test_a_source_needs_each_file_of_materialx_that_it_includes():
+    """MaterialX writes included files into every shader, whether functions are called or not."""
+    texts = {path.name: path.read_text(encoding="utf-8") for path in SOURCES}
+    unused = []
+    for name, text in texts.items():
+        users = (each for each in texts.values() if re.search(rf'["/]{name}"', each))
+        words = {*re.findall(r"\w+", " ".join((text, *users)))}
+        for file in re.findall(r'#include "(libraries/.*)"', text):
+            included = (Path(mx.__file__).parent / file).read_text(encoding="utf-8")
+            if words.isdisjoint(re.findall(NAMES, included)):
+                unused.append((name, file))
+    assert unused == []
 
 
 # Patterns of code that is invalid in Metal, each with an example: structures have no constructor
