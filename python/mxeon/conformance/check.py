@@ -175,8 +175,8 @@ def judge(
     """The result of a check.
 
     `measure(False)` measures the subject, and `measure(True)` measures the control, which `variant`
-    describes. `place` is the result without a measurement, which is returned if the check does not
-    run. The diagnosis quotes the renderer's warnings. Python shows other warnings.
+    describes. If a measurement raises an error, the result is `place` with the error. The diagnosis
+    quotes the renderer's warnings.
     """
     try:
         with warnings.catch_warnings(record=True) as records:

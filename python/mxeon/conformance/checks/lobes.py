@@ -303,8 +303,8 @@ def quantities(case: Case, batch: Batch, clamped: Batch) -> Iterator[tuple[str, 
 def outside(case: Case) -> Iterator[tuple[str, str, float, Compared]]:
     """Compare a few pairs for each tested value outside the usual range of an input.
 
-    A comparison comes with the names of the quantity and the input, and with the input's value. All
-    results are divided by the quantity's tolerance. A quantity that fails for usual inputs is
+    Each comparison comes with the names of the quantity and the input, and with the input's value.
+    Values are divided by the quantity's tolerance. Quantities that fail for usual inputs are
     skipped.
     """
     spec, views = case.of(PbrSpec), case.backend.views[0]

@@ -503,8 +503,8 @@ def wrong_inputs(case: Case) -> list[str]:
     """Inputs that fail to change the light through the surface, or that wrongly change the light.
 
     `retroreflective` affects only reflection. If opacity replaces refraction, only weight and tint
-    affect a lobe in mode T. In all other cases, every input must have an effect, even the tangent,
-    on which the albedo depends if the alphas differ.
+    affect a lobe in mode T. In all other cases, every input must have an effect. The tangent has an
+    effect if the alphas differ.
     """
     batch = case.few[0].first(64)
     dead = dead_inputs(case, batch, lambda batch: case.transmitted(batch, samples.sky_map()))

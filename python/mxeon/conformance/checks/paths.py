@@ -612,8 +612,8 @@ def density_integrals(
 ) -> Array:
     """Integrals of a density over patches of a sphere, and over patches of a cone.
 
-    The patches of the sphere surround the first pole and exclude the cone, which surrounds the
-    second pole. For each patch, the number of nodes per axis increases along `nodes` until two
+    Patches of the sphere surround the first pole. The cone around the second pole is excluded from
+    the sphere. For each patch, the number of nodes per axis increases along `nodes` until two
     results agree up to `close` in the patch and in all neighboring patches. The neighbors count,
     because the nodes of a single patch may miss an edge of the density.
     """

@@ -408,9 +408,9 @@ def batch_of(pixels: Pixels) -> Batch:
 def sums(case: Case, groups: Sequence[Pixels]) -> list[Array]:
     """Expected light of each pixel: the sum of parts with one light and one lobe each.
 
-    The parts are evaluated in another order of pixels, so that a pixel has other neighbors. A part
-    is on a plane in the surface's frame, except under an uneven sky. For a lobe that depends on the
-    shape of the surface, a part keeps the shape, but rows and columns of each square are exchanged.
+    The parts are evaluated in another order of pixels, so that a pixel has other neighbors. Each
+    part is evaluated on a plane in the surface's frame, except under an uneven sky. If a lobe
+    depends on the surface's shape, the shape stays, but rows and columns of squares are exchanged.
     """
     curved = case.lobe.curved
     layout = TRANSPOSED if curved else APART

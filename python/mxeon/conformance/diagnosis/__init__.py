@@ -132,8 +132,8 @@ def _distance(
 ) -> float:
     """Root-mean-square distance between the measured values and a candidate with a fault.
 
-    Roughnesses above 1, which not every model supports, and lights with a cosine up to LEAST_LIGHT
-    are excluded. If the tolerance limits a mean, single values are noisy, so means are compared.
+    Pairs with a roughness above 1, which not every model supports, or with a light's cosine of at
+    most LEAST_LIGHT are excluded. If the tolerance limits a mean, means are compared.
     """
     errors = []
     for case in cases:

@@ -259,8 +259,8 @@ class Result(BriefRepr):
     - `difference`: Unweighted difference of a material's worst picture; None for other checks.
     - `control`: The negative control; None only if the check did not run.
     - `reason`: Reason that the check did not run.
-    - `claimed`, `model`: Title of the model that a renderer's own node claims to have, and title of
-      the published form of that model that was judged.
+    - `claimed`: Title of the model that a renderer's own node claims to have.
+    - `model`: Title of the published form of the claimed model, which was judged.
     - `measured`: Inputs of a document's nodes whose values come from the host, because patterns
       have no model; see `mxeon.conformance.reference.HostValues`.
     - `pages`: Names of pages in `docs/upstream/` on the defects that the result shows.
