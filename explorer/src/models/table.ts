@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same models and known defects as in python/mxeon/models/table.py. The functions are GLSL of the
-// page, translated to float64.
+// The same models and known defects as in python/mxeon/models/table.py. Functions are translated
+// from the GLSL of the page to float64.
 
 import * as glsl from "glsl:models";
 import type { Vec3 } from "../data";

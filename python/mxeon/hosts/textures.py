@@ -89,7 +89,7 @@ def read_latlong(environment: float | str | Path | None) -> NDArray[np.float32]:
 
 def _not_finite(pixels: NDArray[np.float32]) -> str:
     """Description of the first non-finite value and the number of such values, or ""."""
-    if np.isfinite([pixels.min(), pixels.max()]).all():  # a NaN makes both values NaN
+    if np.isfinite([pixels.min(), pixels.max()]).all():  # NaN if any pixel is NaN
         return ""
     finite = np.isfinite(pixels)
     place = np.unravel_index(finite.argmin(), finite.shape)

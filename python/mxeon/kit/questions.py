@@ -207,7 +207,7 @@ def questions(claim: str = "") -> tuple[Question, ...]:
     if not claim:
         return QUESTIONS
     assert_known("claims", claim, CLAIMS)
-    # The claimed model is judged on materials whose roughness has the same meaning.
+    # Only the materials `rough` have a roughness with the meaning that the claimed model needs.
     rough = (FALSE,) if claim == "qon" else (TRUE, HALF)
     variant = "roughness is dropped", control("lambert"), claim
     if claim == "lambert":

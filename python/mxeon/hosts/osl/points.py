@@ -40,7 +40,7 @@ IMAGE = "points.tif"  # name of the image
 class Column:
     kind: str  # OSL type
     values: ArrayLike  # one value per point, or one value for all points
-    declared: bool = True  # whether the variable is declared; if not, it is a global variable
+    declared: bool = True  # false for the global variables of OSL
 
     @property
     def rows(self) -> NDArray[np.float32]:
