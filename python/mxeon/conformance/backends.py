@@ -69,7 +69,7 @@ class Backend(ABC):
     abilities: ClassVar[Ability]  # supported kinds of nodes and checks
     # Kinds of states, such as "lights", for which the check `states` only uses the first state.
     plain: ClassVar[tuple[str, ...]] = ()
-    all_samples: ClassVar[bool] = False  # whether controls and expensive checks use all samples
+    all_samples: ClassVar[bool] = False  # whether `few` contains all samples
     fewer: ClassVar[Counts | None] = None  # replaces the counts of specs that would draw more pairs
     engine_errors: ClassVar[Errors | None] = None  # replaces the errors of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
@@ -148,7 +148,7 @@ class Backend(ABC):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """A subset of the samples, for expensive checks and controls."""
+        """A subset of the samples, for expensive checks and negative controls."""
         spec = cast(ValueSpec, self.spec)
         return self.batches if self.all_samples else spec.few(self.batches, self.counts)
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Small LRU caches. The key of a cached value consists of the numbers that determine the value.
 
-Checks, controls and libraries share many values. Batches are compared by a hash of their numbers,
-because hashing takes less time than evaluating a model or a shader.
+Checks, negative controls and libraries share many values. Batches are compared by a hash of their
+numbers, because hashing takes less time than evaluating a model or a shader.
 """
 
 from collections import OrderedDict

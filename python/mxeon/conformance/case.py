@@ -48,11 +48,11 @@ class Case:
 
     spec: Spec
     backend: backends.Backend
-    # Mistakes that a control makes in inputs, in values, and in the throughput of layers.
+    # Mistakes that a negative control makes in inputs, in values, and in throughputs of layers.
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
-    control: bool = False  # a control uses few samples, because one failing sample is enough
+    control: bool = False  # negative controls use few samples, because one failure is enough
     chosen: tuple[Batch, ...] = ()  # batches that replace the samples in a diagnosis
     explained: dict[object, results.Diagnosis] = field(default_factory=dict, init=False)  # cache
 

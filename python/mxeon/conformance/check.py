@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A check has a claim, a measurement of a case, a tolerance, and a control that must fail.
+"""A check has a claim, a measurement of a case, a tolerance, and a negative control.
 
-A check passes if the error is at most the tolerance, and if the check fails on its control, which
-is the same case on the same engine with wrong inputs or outputs.
+A check passes if the error is at most the tolerance, and if the check fails on the negative
+control, which is the same case with wrong inputs or outputs.
 """
 
 import math
@@ -61,7 +61,7 @@ def compared_of(measured: Compared | Iterable[Compared] | Measurement) -> list[C
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """A claim about nodes, with a measurement, a tolerance and a control."""
+    """A claim about nodes, with a measurement, a tolerance and a negative control."""
 
     key: str  # a single word
     claim: str  # a full sentence
@@ -174,9 +174,9 @@ def judge(
 ) -> Result:
     """The result of a check.
 
-    `measure(False)` measures the subject, and `measure(True)` measures the control, which `variant`
-    describes. If a measurement raises an error, the result is `place` with the error. The diagnosis
-    quotes the renderer's warnings.
+    `measure(False)` measures the subject, and `measure(True)` measures the negative control, which
+    `variant` describes. If a measurement raises an error, the result is `place` with the error. The
+    diagnosis quotes the renderer's warnings.
     """
     try:
         with warnings.catch_warnings(record=True) as records:

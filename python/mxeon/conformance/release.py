@@ -196,7 +196,7 @@ class Comparison:
         """Differences of definitions, units and properties.
 
         Nodes that eonlib defines are also compared with eonlib's definitions. If `changed`, a
-        difference is added as a control.
+        difference is added as a negative control.
         """
         release, eonlib = self._release, load_library("eonlib").getNodeDefs()
         additional = (each for each in eonlib if release.getNodeDef(each.getName()) != each)

@@ -41,7 +41,7 @@ class Counts:
     """Numbers of samples that a spec draws."""
 
     pairs: int = PAIRS  # random pairs
-    few: int = FEW  # random pairs in controls and in expensive checks
+    few: int = FEW  # random pairs in negative controls and in expensive checks
     diagnosed: int = FEW  # pairs per batch in a diagnosis
     albedos: int = 1 << 7  # views whose albedos are measured
     materials: int = 64  # materials in checks of integrals and averages

@@ -230,7 +230,7 @@ class ValueSpec(Spec):
         """All samples, with one batch for each kind of samples."""
 
     def few(self, batches: tuple[Batch, ...], counts: Counts) -> tuple[Batch, ...]:
-        """A subset of the samples, for controls and expensive checks."""
+        """A subset of the samples, for negative controls and expensive checks."""
         return tuple(batch.first(counts.few) for batch in batches)
 
     def rescaled(self, compared: Compared) -> Compared:

@@ -475,7 +475,7 @@ def appearance(found: Difference) -> str:
 
 
 def excess(result: Result) -> str:
-    """Words for an error above the tolerance or for a control that passed, otherwise ""."""
+    """Words for an error above the tolerance, or for a negative control that passed, or ""."""
     control = result.control
     if result.error is not None and not result.within:
         if result.difference:
