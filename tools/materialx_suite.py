@@ -100,7 +100,7 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
     (folder / OPTIONS).unlink()  # a link, which `run_tests` replaces by a file
     (folder / "bin").mkdir()
-    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # looks for data next to itself
+    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # reads data from its folder
     # MaterialX reads files before subfolders, so documents of eonlib take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)

@@ -67,7 +67,7 @@ GOALS = {name: goal for group, goal in RATIOS for name in group}
 class Frame:
     """A material on a sphere that is drawn repeatedly with the same uniforms and buffers.
 
-    Setup and drawing are timed separately, so separate methods call functions of `mxeon.hosts.gl`.
+    Setup and drawing are separate methods, which are timed separately.
     """
 
     def __init__(self, host, generated, size):

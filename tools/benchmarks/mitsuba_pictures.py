@@ -91,7 +91,7 @@ SCENES = {"Cornell box": cornell_box, "three balls under an even sky": balls}
 
 
 def rendered(mi, scenes, pictures, samples):
-    """Pictures and processor times by scene. Scenes are rendered in turn, after a warm-up."""
+    """Pictures and processor times by scene. Scenes take turns, after a warm-up round."""
     found = {name: [] for name in scenes}
     for seed in range(pictures + 1):
         for name, scene in scenes.items():

@@ -60,7 +60,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Print the variance of a sampler, divided by the variance of exact samples, at roughness 1."""
+    """Print a sampler's variance at roughness 1, divided by the variance of exact samples."""
     rows = {}
     for title, light in RADIANCES.items():
         ratios = [

@@ -37,7 +37,7 @@ NODES = 20  # quadrature nodes per quarter turn of the azimuth
 
 
 def albedo(mu, eighths):
-    """E by quadrature at roughness 4 / eighths, with an error below 1e-4 of max(E, 1).
+    """E by quadrature at roughness 4 / eighths, with an error below 1e-4 max(E, 1).
 
     f cos = (1 + p) sin(theta_h)^(2 p) / (4 pi) mu_i / (mu + mu_i - mu mu_i),  p = 1 / (2 r)
     """
@@ -46,7 +46,8 @@ def albedo(mu, eighths):
     s, s_i = np.sqrt((1.0 - mu) * (1.0 + mu)), np.sqrt((1.0 - mu_i) * (1.0 + mu_i))
     M = mu + mu_i
     total = np.zeros_like(mu)
-    # For x in [0, 1], tan(phi / 2) is x on one side of a right angle and 1 / x on the other side.
+    # For x in [0, 1], tan(phi / 2) is x if phi is below a right angle, and 1 / x if phi is
+    # above.
     for near, far in ((1.0, x * x), (x * x, 1.0)):
         half = near / (near + far)
         flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half

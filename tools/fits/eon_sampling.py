@@ -26,12 +26,12 @@ UPPER_POWERS = (0, 1, 2, 3, 4, 5)
 
 
 def multiple_density(mu):
-    """Density of the cosine in the part `multiple`, 2 H(mu) mu / (c1 - c2)."""
+    """Density 2 H(mu) mu / (c1 - c2) of the cosine in EON's part `multiple`."""
     return 2 * closed_form(mu) * mu / LOSS_AVG
 
 
 def upper_density(m):
-    """Density S m / (pi/4 - 1/3) of m = 1 - mu in the part `upper`, for wo at the horizon."""
+    """Density S m / (pi/4 - 1/3) of m = 1 - mu in EON's part `upper` for grazing wo."""
     return mp.sqrt(m * (2 - m)) * m / UPPER_TOTAL
 
 

@@ -6,7 +6,7 @@
 The layer equation needs the albedo of each lobe. The reference computes albedos by quadrature, and
 eonlib uses fits. The script evaluates surfaces by quadratures and by fits, in float64, for random
 directions and materials, drawn with other seeds than in the checks. The script prints the largest
-errors of values, of albedos, and of means over a set, which all fits together cause.
+errors of values, of albedos, and of means over a set, due to all fits together.
 """
 
 from contextlib import ExitStack, contextmanager, suppress

@@ -52,7 +52,7 @@ VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])
 LEAST_PATH = 1e-21  # m
 LEAST_LOSS = 1e-12
-SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # COUNT films per step, GENERATIONS of evolution
+SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # COUNT films per step of the search
 WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of films to vary, and sizes of the steps
 NUMBERS = 10  # numbers that describe a film, its substrate and its view
 COLORED = 17  # NUMBERS, plus 7 for color82, color90 and the exponent of Schlick's curve
@@ -86,7 +86,6 @@ def shader_curve(category, material, mu, width=0.0):
     )
     loss, sizes = np.maximum(1.0 - R * S, LEAST_LOSS), np.sqrt(R * S)
     means, weights = R + (1.0 - R) ** 2 * S / loss, (1.0 - R) * (1.0 - S) / loss
-    # Sum all orders that matter in some polarization or channel.
     bright = 3.0 * ((0.5 * means.sum(axis=0)) ** 2).mean(axis=0)
     least = np.maximum(VALUE_ORDER * bright, WIDTH_ORDER * np.square(width))
     count = order_count(weights, sizes, opd, spread, least)
@@ -214,7 +213,7 @@ def albedo_errors(category, material, alpha, mu):
 
 
 def seen_errors(category, material, alpha, mu):
-    """`albedo_errors` times the cosine of the view, by which a picture of a sphere is averaged."""
+    """`albedo_errors` times the cosine of the view, the weight in pictures of a sphere."""
     return mu * albedo_errors(category, material, alpha, mu)
 
 

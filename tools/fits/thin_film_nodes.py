@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fits the nodes with which `genglsl/lib/microfacet_film.glsl` averages a film.
 
-The script uses random films of up to 1000 nm on each kind of substrate, and other films than the
-checks. Nodes for F_ss minimize the mean fourth power of the errors, which emphasizes the largest
-errors. Nodes for visible facets minimize the mean square error.
+The script uses random films of up to 1000 nm on each kind of substrate, which differ from the films
+of the checks. Nodes for F_ss minimize the mean fourth power of the errors, which emphasizes the
+largest errors. Nodes for visible facets minimize the mean square error.
 
     python -m tools.fits.thin_film_nodes
 """
@@ -115,8 +115,8 @@ def facet_moments(mu, alpha):
 def sampled_facets(mu, alpha):
     """Cosines between 16 visible facets and the view, and the facets' weights.
 
-    Facets below `lowest` are excluded, because they reflect no light towards a view along the
-    normal.
+    Facets below `lowest` are excluded, because no such facet reflects light towards a view along
+    the normal.
     """
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     x, w = np.polynomial.legendre.leggauss(4)

@@ -45,7 +45,7 @@ def on_page_markdown(markdown, page, **_):
 
 
 def on_page_content(html, page, **_):
-    """Prevent line breaks before units, compare halves of pictures, and adapt links of wall.md."""
+    """Prevent line breaks before units, split side-by-side pictures, and adapt links of wall.md."""
     html = unbroken(html)
     if page.file.src_uri == "wall.md":
         return html.replace('href="upstream/README.md"', 'href="upstream/index.html"')
@@ -55,7 +55,7 @@ def on_page_content(html, page, **_):
 
 
 def _halves(found):
-    """HTML that compares the halves of a side-by-side picture. Other pictures are unchanged."""
+    """HTML that splits a side-by-side picture into halves. Other pictures are unchanged."""
     width, height = Image.open(ROOT / "docs" / found[2]).size
     if width != 2 * height:
         return found[0]

@@ -211,7 +211,7 @@ def page(text):
 
 
 def exact_figure():
-    """Plot the errors of FON's energy loss, and the variance of EON's samplers, over the cosine."""
+    """Plot the errors of FON's energy loss, and the variance of EON's samplers."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.unique(np.geomspace(1e-6, 1.0, 400).astype(np.float32))
@@ -231,7 +231,7 @@ def exact_figure():
 
 
 def albedo_figure():
-    """Plot the errors of the albedos of GGX and of a dielectric over the cosine."""
+    """Plot the errors of the albedos of GGX and of a dielectric."""
     figure = Figure(figsize=(7.6, 3.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     mu = np.geomspace(1e-3, 1.0, 120)

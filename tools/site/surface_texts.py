@@ -76,7 +76,7 @@ def rows(
 
 
 def actual_form(result: Result) -> str:
-    """The formula that a shader uses instead of the specification, with the error, or ""."""
+    """The formula that a shader uses instead of the specified formula, with the error, or ""."""
     if result.verdict == PASSED:
         return ""
     cause = result.diagnosis.first

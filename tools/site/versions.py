@@ -29,7 +29,7 @@ def record(versions):
 
     - `nodes`: Number of results by library, version, node and verdict, except verdicts on sentences
       of specifications, which surfaces.md has.
-    - `open`: Subjects that eonlib does not pass, by version, check and verdict.
+    - `open`: Subjects of checks that eonlib does not pass, by version, check and verdict.
     - `pages`: Whether all checks of a ledger page pass, by page and version, for pages about
       MaterialX that need no host except gl.
     """

@@ -73,13 +73,13 @@ def _digest(mutant: Mutant) -> tuple[str, str]:
 
 
 def known_survivors() -> dict[tuple[str, str], str]:
-    """The reasons why mutants survive, by file and change."""
+    """The reasons in `survivors.toml`, by file and change."""
     listed = tomllib.loads(SURVIVORS.read_text(encoding="utf-8"))["survivors"]
     return {(group["file"], line): group["reason"] for group in listed for line in group["lines"]}
 
 
 def change(mutant: Mutant) -> tuple[str, str]:
-    """A mutant's file, and the change in the notation of SURVIVORS."""
+    """A mutant's file, and the change as written in `survivors.toml`."""
     return mutant.file, " ".join(f"{mutant.old} => {mutant.new}".split())
 
 

@@ -252,7 +252,7 @@ OSL_TWINS = {
     functions.source_file("osl", stem).relative_to(ROOT).as_posix()
     for stem in (*functions.STEMS, "ggx_albedo", "conty_kulla_albedo")
 }
-# Code for path tracers and functions that only OSL calls, which no check of a node runs.
+# No check of a node runs code for path tracers, or functions that only OSL calls.
 NOT_CHECKED = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
 STRIDE = 8
 GROUP = 1024  # mutants per program; larger programs slow the driver down
@@ -289,8 +289,8 @@ def differs_from_glsl(mutant: Mutant) -> bool:
 def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
     """Numbers of detected mutants, and the check that detects each mutant.
 
-    Detected mutants are removed from the host. A composed subject is checked only with mutants that
-    no other subject contains.
+    Detected mutants are removed from the host. Subjects with composed lobes are checked only with
+    mutants that no other subject contains.
     """
     seen: set[int] = set()
     for title, composed, text, checks in checked:
@@ -308,13 +308,13 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Subjects as title, whether the spec is in COMPOSED, shader text, and checks."""
+    """Each subject's title, whether the spec is in COMPOSED, shader text, and checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
     # Films come before transmission, which runs the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
     made = [make_case(Evaluating, host, s, "eonlib") for s in specs if s.title != "measured_edf"]
-    cases = [replace(case, control=True) for case in made]  # a subset of the samples
+    cases = [replace(case, control=True) for case in made]  # controls use a subset of the samples
     for turn in range(3):
         for case in cases:
             composed, text = isinstance(case.spec, COMPOSED), case.evaluating.shader.stages["pixel"]
@@ -322,7 +322,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def node_checks(case: Case, turn: int) -> Checks:
-    """Runs the first, second or third group of a node's checks, by `turn`."""
+    """A function that runs one of three groups of a node's checks, selected by `turn`."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:

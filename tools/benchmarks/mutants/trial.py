@@ -50,10 +50,9 @@ FOLDER_TESTS = {
         "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
     ),
 }
-LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups without an #include
+LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, but includes none
 NOISY = ("environment", "furnace")  # slowest checks on Cycles
-# The gl host cannot detect mutants in the following files, because its shaders do not use the
-# files.
+# The gl host cannot detect mutants in the following files, which no shader for gl contains.
 ON_CYCLES = ("genosl/",)
 CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures that only the host osl evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
@@ -122,7 +121,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 
 
 def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
-    """New failures of the first task that has failures that unchanged eonlib does not have."""
+    """Failures that unchanged eonlib does not have, from the first task with such failures."""
     for task in tasks:
         if failures := _failed(task, judge):
             known = _original_failures(replace(task, library="eonlib"), judge)

@@ -29,7 +29,7 @@ def _listed(errors: dict[float, float]) -> str:
 
 
 def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
-    """Largest error of C + slope (zero - C) C r, as a sentence and as a number."""
+    """Largest error of the approximation rho = C + slope (zero - C) C r."""
     error = np.abs(COLORS + slope * (zero - COLORS) * COLORS * ROUGHNESS[:, np.newaxis] - exact)
     row, column = np.unravel_index(error.argmax(), error.shape)
     place = f"at r = {ROUGHNESS[row]:g}, C = {COLORS[column]:.2f}"
@@ -43,7 +43,7 @@ def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
     least=FLOAT32,
 )
 def printed_root() -> Measured:
-    """Errors of the published Eq. (30) at low roughness. By the claim, the last error is large."""
+    """Errors of the published Eq. (30) at low roughness. Only the last error is judged."""
     errors = {}
     for r in (1e-3, 1e-6, 1e-9):
         A, B = _quadratic(r)

@@ -70,7 +70,7 @@ def wasted() -> Measured:
 
 @claim("Listing 3", "no sample below the horizon", "z", least=0.0)
 def side_of_the_lune() -> Measured:
-    """Lowest direction by Listing 3 for wo near the normal, where the fitted d is positive."""
+    """Smallest z that Listing 3 samples for wo along the normal, where the fitted d is positive."""
     mu = np.linspace(0.999, 1.0, 100_001)
     d = sampling.ltc_md(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
