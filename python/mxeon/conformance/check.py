@@ -79,7 +79,7 @@ class Check:
     # Whether the verdict is "differs" instead of "failed" if a permitted function explains the
     # values.
     open: bool = False
-    # Whether a spec can be measured on a host, by name, and with a client's lighting methods.
+    # Whether a spec can be measured on the named host, and with a client's lighting methods.
     hosts: Callable[[Spec, str], bool] = lambda spec, host: True
     methods: Callable[[Spec, Methods], bool] = lambda spec, methods: True
 

@@ -57,7 +57,7 @@ UNEVEN = Client(radiance=sky_map(), irradiance=sky_map())
 LIT_SCENES = (SIDE, CLIENT), (FURNACE, UNEVEN), (SIDE, Client(alpha=True))
 PICTURES = tuple(replace(scene, size=SIZE, client=client) for scene, client in LIT_SCENES)
 LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # lobes connected to inputs, by type
-# Constant values of inputs, by type. A tangent must not be parallel to the normal.
+# For each type, a constant value of inputs. A tangent must not be parallel to the normal.
 ZEROS = {"float": "0", "integer": "0", "boolean": "false"}
 ZEROS |= {"vector2": "0, 0", "color3": "0, 0, 0", "vector3": "0, 0, 1"}
 TANGENT = "1, 0, 0"
@@ -100,7 +100,7 @@ def newer_nodes(document: mx.Document, release: mx.Document) -> tuple[str, ...]:
 def definition_facts(
     definition: mx.NodeDef, reference: mx.NodeDef, attributes: Sequence[str] = ATTRIBUTES
 ) -> dict[str, str]:
-    """Attributes to compare, of a definition and of each port that `reference` has."""
+    """Attributes of a definition, and of each port that `reference` has."""
     name = reference.getName()
     facts = {
         f"category of {name}": definition.getNodeString(),
@@ -120,7 +120,7 @@ def definition_facts(
 
 
 def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
-    """Attributes, in a document, of all units and geometric properties of the release."""
+    """Attributes of all units and geometric properties of the release, as defined in a document."""
     names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
     definitions = [own for own in map(document.getChild, names) if own]
     return {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A spec describes how to check a node, by input ranges, models, errors and samples.
+"""A spec defines input ranges, models, errors and samples for the checks of a node.
 
 Each file in the folder `specs` describes a family of nodes. Backends define how an engine
 evaluates a spec.
@@ -153,7 +153,7 @@ class Spec(ABC):
     model: str = ""  # name of the expected model; "" for none
     inputs: tuple[Input, ...] = ()  # inputs, except inputs that select the mode
     errors: Mapping[str, Tolerance] = field(default_factory=dict)  # tolerances by quantity
-    # Tolerances for values outside the usual range of an input, by quantity, input and value.
+    # Tolerances outside the usual ranges of inputs. A key has a quantity, an input and a value.
     outside_errors: Mapping[tuple[str, str, float], Tolerance] = field(default_factory=dict)
     libraries: tuple[str, ...] = ()  # libraries that the spec applies to, or () for all libraries
     claim: str = ""  # claim of all checks of the node, or "" for each check's own claim
@@ -166,9 +166,9 @@ class Spec(ABC):
     # Slope of the values per radian near the normal, where rounded cosines do not resolve angles.
     along: float = 0.0
     optional: bool = False  # whether checks are skipped if a target lacks the node
-    # Errors of an engine's built-in functions, by quantity. The errors are measured on the engine.
+    # For each quantity, errors of an engine's built-in functions, measured on the engine.
     engines: Mapping[str, tuple[EngineError, ...]] = field(default_factory=dict)
-    # Additional errors of MaterialX's fit for prefiltered light, by quantity.
+    # For each quantity, additional errors of MaterialX's fit for prefiltered light.
     prefiltered_fits: Mapping[str, tuple[Term, ...]] = field(default_factory=dict)
 
     @abstractmethod
@@ -191,7 +191,7 @@ class Spec(ABC):
 
     @property
     def changes(self) -> Mapping[str, samples.Changes]:
-        """Inputs before and after the change of one input, by the name of that input."""
+        """For each input, all inputs before and after a change of that input."""
         return {
             each.name: (each.needs, {**each.needs, each.variable or each.name: each.change})
             for each in self.inputs

@@ -61,8 +61,8 @@ SCATTERED = """if (what < 0.5)
 # Code that is separate from SCATTERED, because drivers inline the whole material at each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
-# GLSL code that returns a value, by the value's name. The argument `what` of CALL is the position
-# of the name in this table.
+# GLSL code for each named value. The argument `what` of CALL is the position of the name in
+# FUNCTIONS.
 FUNCTIONS = {
     **dict.fromkeys(("evaluate", "pdf", "wi", "weight", "density"), SCATTERED),
     **dict.fromkeys(("opacity", "emission"), PASSED),

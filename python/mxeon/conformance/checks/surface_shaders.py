@@ -24,7 +24,7 @@ from mxeon.hosts.calls import NORMAL, TANGENT
 
 WORST = 32  # number of worst pairs that a diagnosis tries to correct
 CHANGED = 8  # number of pairs for each changed input
-# Inputs that disable a lobe if set to 0, by the lobe's name.
+# For each lobe, inputs that disable the lobe if set to 0.
 LOBE_INPUTS = {
     "coat": ("coat", "coat_weight", "clearcoat"),
     "sheen": ("sheen", "fuzz_weight", "sheen_color"),

@@ -361,7 +361,7 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """Explain outputs that are not 0 by constant values, by regions and by branches."""
+    """Explain nonzero outputs by a constant value, by a region and by the branches."""
     branches: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Regions describe where a shader is wrong, by named sets of pairs and by ranges of inputs."""
+"""Regions are named sets of pairs, or ranges of inputs, in which a shader is wrong."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, compress
@@ -13,7 +13,7 @@ from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of,
 
 COLORS = ("color", "tint", "color0")  # possible names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
-# Inputs on which named regions depend, by the first word of the region's name.
+# For the first word of each region's name, the inputs on which the region depends.
 INPUTS = {
     "color": COLORS,
     "weight": ("weight",),
@@ -117,7 +117,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
 
 
 def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
-    """Parts of an input in which to search for a range, by key of `words.PARTS`.
+    """Parts of an input in which to search for a range, as keys of `words.PARTS` with numbers.
 
     - `wrong`: Mask of the color channels with wrong values.
     """

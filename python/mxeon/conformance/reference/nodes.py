@@ -121,11 +121,11 @@ def _blur(reach: float) -> Array:
     return diffusion_blur(COSINES, reach)
 
 
-# Functions for the share of a uniform environment that a node transmits, by name of the node's row.
+# For each row's name, a function for the share of a uniform environment that the node transmits.
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
-# Functions for the albedo of an anisotropic lobe in MaterialX's environment sum, by node category.
+# For each node category, the albedo of an anisotropic lobe in MaterialX's environment sum.
 SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }
@@ -291,7 +291,7 @@ LOBES = {
 
 NOTHING = Bsdf(np.zeros(3), np.ones(3))  # an absent lobe
 
-# Nodes that combine lobes, by category: the names of the inputs, and a function of the inputs.
+# For each node that combines lobes, the names of the inputs and a function of the inputs.
 COMBINATIONS: dict[str, tuple[tuple[str, ...], Callable[..., Bsdf]]] = {
     "layer": (("top", "base"), layering.layer),
     "mix": (("fg", "bg", "mix"), layering.mix),
@@ -467,7 +467,7 @@ def _when(compare: Callable[..., NDArray[np.bool_]]) -> Operation:
 
 UNARY, BINARY = ("in",), ("in1", "in2")
 
-# Nodes that compute numbers, by category: the names of the inputs, and a function of the inputs.
+# For each node that computes numbers, the names of the inputs and a function of the inputs.
 OPERATIONS: dict[str, Operation] = {
     "constant": (("value",), same),
     "convert": (UNARY, lambda value: np.asarray(value, np.float64)),

@@ -210,7 +210,7 @@ def _judge(policy: Policy) -> Judge:
 
 
 def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
-    """The run that consists of a plan and of the findings of completed tasks, by task number."""
+    """The run that consists of a plan and of the findings of completed tasks."""
     done = [findings[number] for number in sorted(findings)]
     notes = [note for each in done for note in each.notes]
     refused = {(each.document, each.library): each.faults for each in planned.refused}

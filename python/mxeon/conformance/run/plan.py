@@ -173,10 +173,10 @@ class Plan(Scope):
     """All tasks of a run and all data that findings depend on. Equal plans have equal findings."""
 
     tasks: tuple[Task, ...]
-    # Values of the command's options for policy, seed and methods, by option.
+    # Values of the command's options for policy, seed and methods.
     options: dict[str, str] = field(default_factory=dict)
-    # SHA-256 of each file that the findings depend on, by path; "" for a file that cannot be read.
-    # Plans of runs without a journal contain no files.
+    # SHA-256 of each file that the findings depend on, or "" for a file that cannot be read. Plans
+    # of runs without a journal contain no files.
     files: dict[str, str] = field(default_factory=dict)
 
 

@@ -92,7 +92,7 @@ OPACITIES = (0.0, 0.25, 1.0)
 
 # The two cosines of a cone have ten roundings in all, and the differences of cosines have two.
 CONE_ROUNDINGS = 12
-# Tolerances by the name of the model's row. The tolerance of all other rows is UNIFORM.
+# Tolerances of some rows, by name. All other rows have the tolerance UNIFORM.
 # fmt: off
 ERRORS = {
     "conical": sum_of(
