@@ -28,7 +28,7 @@ def failing(monkeypatch, error):
         (FileExistsError(17, "File exists", "out"), MISUSE, "out: must be a folder; File exists"),
         (NotRun("gl: none"), NOT_RUN, "gl: none"),
         (ShaderError("gl: no shader"), FAILED, "gl: no shader"),
-        (MemoryError(), NOT_RUN, "memory must suffice for the work; there is no more"),
+        (MemoryError(), NOT_RUN, "memory must suffice for the work; none is left"),
         (InputError("x" * 2000), MISUSE, "x" * 994 + " [...]"),
     ],
 )
@@ -74,8 +74,8 @@ def test_every_fault_of_a_document_has_its_line(tmp_path, capsys):
     lines = [
         f"{path}: input \"lobe/colr\" must be an input of oren_nayar_diffuse_bsdf; got 'colr': did "
         "you mean color?",
-        f'{path}: input "i0/file" must name a file that exists; got no.png: --path FOLDER says where '
-        "it lies",
+        f'{path}: input "i0/file" must name a file that exists; got no.png: pass its folder as '
+        "--path FOLDER",
     ]
     for command in (
         f"generate {path} --target osl --outputPath {tmp_path} --json",

@@ -44,7 +44,7 @@ def test_a_signal_ends_the_command_in_one_line_and_nothing_stays(tmp_path, numbe
     (os.kill if to == "command" else os.killpg)(process.pid, number)
     _, errors = process.communicate(timeout=DEADLINE)
     line = "interrupted" if number == signal.SIGINT else f"ended by {number.name}"
-    line += "; --resume continues, `mxeon report make report` reports what is done"
+    line += "; --resume continues; `mxeon report make report` reports finished checks"
     assert (process.returncode, errors) == (128 + number, f"mxeon: {line}\n")
     assert not list((tmp_path / "tmp").iterdir())
     assert not list(tmp_path.rglob(".mxeon*"))

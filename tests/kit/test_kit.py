@@ -353,7 +353,7 @@ SPOILED = {  # pictures, a function that damages each picture, and words of the 
         lambda path: write_exr(path, read(path)[:32], {}),
         "must be 64 x 64 pixels; got 64 x 32",
     ),
-    "true_back": (round_to_bytes, "never rounded to eight bits"),
+    "true_back": (round_to_bytes, "never quantized to 8 bits"),
     "true_furnace": (damage_header, r"\\xffhlist"),
     "half_side": (write_png, "got uint8"),
     "false_front": (lambda path: path.with_suffix(".csv").write_text(""), "must be one file"),

@@ -145,9 +145,9 @@ RULES = (
     (multiply, (LOBE, -0.5), "weight must lie in [0, inf); got -0.5"),
     (COATED, (*CLAY, 0.001, 1.5), "alpha must lie in [0.01, 1]; got 0.001"),
     # Directions of a wrong length, or on the wrong side of the surface.
-    (LAMBERT, (UP, [UP, [0, 0, 2]], 1), "wi must be unit vectors to 1e-06; got squared length 4.0 at index (1,)"),
-    (LAMBERT, ([np.nan, 0, 1], UP, 1), "wo must be unit vectors to 1e-06; got squared length nan"),
-    (LAMBERT, (UP, [1e200, 0, 0], 1), "wi must be unit vectors to 1e-06; got squared length inf"),
+    (LAMBERT, (UP, [UP, [0, 0, 2]], 1), "wi must be unit vectors within 1e-06; got squared length 4.0 at index (1,)"),
+    (LAMBERT, ([np.nan, 0, 1], UP, 1), "wo must be unit vectors within 1e-06; got squared length nan"),
+    (LAMBERT, (UP, [1e200, 0, 0], 1), "wi must be unit vectors within 1e-06; got squared length inf"),
     (sampling.cosine_pdf, ([UP, [0.6, 0, -0.8]],), "wi must not point below the horizon (z >= 0); got z = -0.8 at index (1,)"),
     (translucent_btdf, (UP, [0.6, 0, 0.8], 1.0), "wi must not point above the horizon (z <= 0); got z = 0.8"),
     # Types of arguments.

@@ -219,7 +219,7 @@ def test_a_list_beside_as_many_directions_is_refused_with_the_remedy(call):
         "function": lambda: models.eon_brdf(MANY, WI, color, 0.2),
         "microfacets": lambda: models.dielectric_brdf(MANY, WI, color, 0.2, 1.5),
     }
-    with pytest.raises(ValueError, match=r"beside 5 directions has two meanings: write \w+\[:, np"):
+    with pytest.raises(ValueError, match=r"with 5 directions is ambiguous: write \w+\[:, np"):
         calls[call]()
 
 
@@ -270,7 +270,7 @@ def test_messages_say_what_there_is(call, error, message):
 
 def test_three_samples_of_one_direction_take_no_color_for_their_reflectances():
     u, color = np.full((3, 2), 0.4), np.array([0.8, 0.4, 0.1])
-    with pytest.raises(ValueError, match=r"^rho of shape \(3,\) beside 3 samples .* rho.mean\(\)"):
+    with pytest.raises(ValueError, match=r"^rho of shape \(3,\) with 3 samples .* rho.mean\(\)"):
         sampling.eon_sample(WO, u, 0.5, rho=color)
     each = sampling.eon_sample(np.tile(WO, (3, 1)), u, 0.5, rho=color)[1]
     assert len(set(each)) == 3

@@ -28,7 +28,7 @@ FILES = {
     "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
     "binary": ("".join(map(chr, range(256))), "must be a MaterialX document in UTF-8; invalid"),
     "cut short": (material(lobe())[:150], "must be a MaterialX document; XML parse error"),
-    "too deep": (DEEP, "must have at most 64 elements within each other; got 65"),
+    "too deep": (DEEP, "must have at most 64 nested elements; got 65"),
     "future": ('<materialx version="1.99"/>', "MaterialX upgrades to 1.39; got '1.99'"),
     "no version": ('<materialx version="x"/>', "MaterialX upgrades to 1.39; got 'x'"),
     "no include": (including("none.mtlx"), "none.mtlx"),

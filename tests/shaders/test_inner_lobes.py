@@ -48,7 +48,7 @@ def test_the_lobes_below_the_surface_are_those_that_have_an_effect(text, kinds):
     "lobes, paths, words",
     [
         (("subsurface",), Paths(), ""),
-        (("subsurface",), Paths(1), "needs at least 16 samples of a pixel; with 1"),
+        (("subsurface",), Paths(1), "needs at least 16 samples per pixel; with 1,"),
         (("subsurface",), Paths(process.FEWEST_SAMPLES, 1), ""),
         (("transmission",), Paths(None, 1), "needs 8 bounces; with 1"),
         (("transmission", "volume"), Paths(64, 8), ""),

@@ -126,13 +126,13 @@ def package(folder):
 def other_generator(folder):
     math = "stdlib/genglsl/lib/mx_math.glsl"
     replace_text(copy_of_stock(folder), "mx_matrix_mul(", "own_mul(", math)
-    return "has no mx_matrix_mul, which glsl calls: name its build with --materialx"
+    return "has no mx_matrix_mul, which glsl calls: pass the right MaterialX build with --materialx"
 
 
 def unknown_token(folder):
     source = "pbrlib/genglsl/lib/mx_closure_type.glsl"
     replace_text(copy_of_stock(folder), "$closureDataConstructor", "$newToken /* $a */", source)
-    return "glsl does not replace its $newToken: name its build with --materialx"
+    return "glsl does not replace its $newToken: pass the right MaterialX build with --materialx"
 
 
 def holding(*names):

@@ -20,7 +20,7 @@ from mxeon.jobs.signals import SignalExit, raise_signals
 
 DESCRIPTION = (
     "Check renderers against MaterialX's specification of physically based shading, and get "
-    "eonlib, a drop-in replacement for its BSDF shaders."
+    "eonlib, a drop-in replacement for MaterialX's BSDF shaders."
 )
 EXAMPLES = (
     "check my.mtlx  # what renders wrong, and why",
@@ -73,7 +73,7 @@ def _run(arguments: Sequence[str]) -> int:
     except (MxeonError, OSError) as error:
         return fail(*status_of(error))
     except MemoryError:
-        return fail(NOT_RUN, "memory must suffice for the work; there is no more")
+        return fail(NOT_RUN, "memory must suffice for the work; none is left")
     except Exception:  # a bug in mxeon
         traceback.print_exc()
         return NOT_RUN
@@ -88,7 +88,7 @@ def _check_memory() -> None:
     limit, _ = resource.getrlimit(resource.RLIMIT_AS)
     if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
         rule = f"address space must be at least {LEAST_MEMORY} bytes; got {limit}"
-        raise NotRun(f"{rule}: raise it by ulimit -v")
+        raise NotRun(f"{rule}: raise it with ulimit -v")
 
 
 def _check_encoding(arguments: Sequence[str]) -> None:
@@ -97,7 +97,7 @@ def _check_encoding(arguments: Sequence[str]) -> None:
         try:
             argument.encode()
         except UnicodeEncodeError:
-            raise InputError(f"arguments must be UTF-8, file names too; got {argument!r}") from None
+            raise InputError(f"arguments and file names must be UTF-8; got {argument!r}") from None
         if "\0" in argument:  # only Python can pass such an argument; a shell cannot
             raise InputError(f"arguments must have no null character; got {argument!r}")
         if not argument or re.fullmatch("--[^=]+=", argument):

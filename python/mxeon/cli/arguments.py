@@ -245,9 +245,9 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
 
 METHODS = "methods of generated shaders"  # heading of the options of `add_methods`
 HELP = {
-    "environment": "how specular light of an environment is found",
-    "transmission": "what passes a surface: the refracted environment, or what is behind it",
-    "albedo": "directional albedos of MaterialX's own functions",
+    "environment": "how reflections of an environment are computed",
+    "transmission": "what is seen through a surface: the refracted environment, or what is behind",
+    "albedo": "how MaterialX's own functions find albedos",
 }
 
 
@@ -257,12 +257,12 @@ def add_methods(command: argparse.ArgumentParser) -> None:
     for name, choices in CHOICES.items():
         words = f"{HELP[name]}: {', '.join(choices)}"
         group.add_argument(OPTIONS[name], default="", metavar="NAME", help=words, dest=name)
-    words = "iterations of MaterialX's own thin films"
+    words = "iterations in MaterialX's own thin-film code"
     group.add_argument(OPTIONS["airy"], type=int, default=0, metavar="N", help=words, dest="airy")
     for name, words in (
-        ("premultiplied", "whether mix folds its weight into those of its lobes"),
+        ("premultiplied", "whether mix multiplies its lobes' weights by its own"),
         ("distributed", "whether layer is distributed over mix"),
-        ("searched", "whether sources are found in the library's genglsl/environment first"),
+        ("searched", "whether to search the library's genglsl/environment first"),
     ):
         action = argparse.BooleanOptionalAction
         group.add_argument(OPTIONS[name], action=action, help=words, dest=name)

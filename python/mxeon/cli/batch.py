@@ -143,9 +143,7 @@ def picture(
         for reason in engine.approximations(shader, setting):
             warnings.warn(LobeWarning(shader.element, reason), stacklevel=2)
         if no_studio:
-            reason = (
-                "cannot draw the studio, an environment image; used --scene side --shape sphere"
-            )
+            reason = "cannot draw the studio's environment; used --scene side --shape sphere"
             warnings.warn(f"{host}: {reason}", stacklevel=2)
         identity = engine.identity()
     return image, {

@@ -29,10 +29,10 @@ def add_parser(commands: arguments.Commands) -> None:
         "check",
         "check materials, or a shader library, against the specification",
         run,
-        "check my.mtlx  # your materials, with eonlib beside stock MaterialX",
+        "check my.mtlx  # your materials, with eonlib and with stock MaterialX",
         "check my.mtlx --library stock --report out  # with MaterialX's own shaders, and a report",
         "check --library ./libraries --node all  # every node of your copy of MaterialX",
-        "check --library ./libraries --baseline accepted  # what got worse since a run",
+        "check --library ./libraries --baseline accepted  # what got worse since an earlier run",
     )
     command.add_argument(
         "files",
@@ -52,7 +52,7 @@ def add_parser(commands: arguments.Commands) -> None:
         action="append",
         metavar="NAME",
         help=f"{arguments.LIBRARY}. Repeatable. Without it, FILEs are checked with stock too, "
-        "for comparison; only eonlib sets the exit status",
+        "for comparison; only eonlib determines the exit status",
     )
     command.add_argument(
         "--node",
@@ -71,7 +71,7 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument(
         "--annotations",
         action="store_true",
-        help="also print failures, or what got worse, as commands to GitHub's log",
+        help="also print failures, or what got worse, as annotations for GitHub",
     )
     command.add_argument(
         "--resume", action="store_true", help="continue an interrupted run in the --report folder"
@@ -117,8 +117,8 @@ def run(options: argparse.Namespace) -> int:
         require_extra("--report")
     if options.scheduler and options.materialx:
         raise InputError(
-            "--materialx does not reach the workers of a --scheduler; start them with that package "
-            "on PYTHONPATH"
+            "--materialx does not reach the workers of a --scheduler; put that package on "
+            "their PYTHONPATH"
         )
     baseline = _baseline(options) if options.baseline else None
     refused: list[str] = []
@@ -150,7 +150,7 @@ def run(options: argparse.Namespace) -> int:
     except signals.SignalExit as end:
         if options.report and Path(options.report, JOURNAL).exists():
             remedy = (
-                f"--resume continues, `mxeon report make {options.report}` reports what is done"
+                f"--resume continues; `mxeon report make {options.report}` reports finished checks"
             )
             end.args = (f"{end}; {remedy}",)
         raise

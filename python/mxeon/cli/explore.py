@@ -22,7 +22,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "explore",
         "draw, compare and probe materials in a browser",
         run,
-        "explore  # every lobe, eonlib beside stock MaterialX; drop documents on the page",
+        "explore  # every lobe with eonlib and stock MaterialX; drop documents on the page",
         "explore my.mtlx --environment sky.hdr",
         "explore my.mtlx --output page.html  # a page to send to somebody",
     )
@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
             raise errors[-1]
         data = page_data(each.value for each in documents)
         if not data.judged:
-            warn("the host gl does not run here: the page leaves open which models the nodes are")
+            warn("the host gl does not run here, so the page cannot name the models of nodes")
         sky = sky_of(light) if light else None
         return page(replace(data, served=not options.output, warnings=warnings, sky=sky))
 

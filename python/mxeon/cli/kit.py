@@ -14,7 +14,7 @@ def add_parser(commands: arguments.Commands) -> None:
     examples = (
         "kit export kit  # then render its scenes to kit/renders",
         "kit check kit --renderer MyRenderer --report out",
-        "kit check kit --claims qon  # for a renderer that claims QON alone",
+        "kit check kit --claims qon  # for a renderer that claims only QON",
     )
     summary = "find out which rough-diffuse model a renderer uses, from its images"
     group = arguments.add_command(commands, "kit", summary, None, *examples)

@@ -47,5 +47,5 @@ def _explain(folder: Path, documents: Path) -> None:
     from mxeon.shaders.library_export import recipes
 
     show(f"folder                {folder}")
-    show(f"diffuse nodes alone   {documents / 'diffuse'}")
+    show(f"diffuse nodes only    {documents / 'diffuse'}")
     print(recipes(on_one_line(folder)))

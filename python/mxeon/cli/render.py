@@ -40,7 +40,7 @@ def add_parser(commands: arguments.Commands) -> None:
     command.add_argument(
         "--scene",
         metavar="NAME",
-        help="light: studio, front, side, back, furnace (default: studio, or side where the host cannot draw it)",
+        help="light: studio, front, side, back, furnace (default: studio, or side if the host cannot draw it)",
     )
     command.add_argument(
         "--environment",
@@ -51,7 +51,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "--shape",
         "--geometry",
         metavar="NAME",
-        help="ball, a shader ball (default in the studio), sphere (default in other light), or an .obj or .glb file",
+        help="ball, a shader ball (default in the studio), sphere (default in all other lights), or an .obj or .glb file",
     )
     command.add_argument(
         "--size",
@@ -64,7 +64,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "--integrator",
         choices=("raster", "path"),
         default="raster",
-        help="path: on gl, trace paths of light, with shadows and reflections of the object itself",
+        help="path: path tracing on gl, with the object's own shadows and reflections",
     )
     command.add_argument(
         "--samples",

@@ -27,7 +27,7 @@ def add_parser(commands: arguments.Commands) -> None:
     summary = "list what changed between two runs; the exit status is 1 if something got worse, 3 if a check no longer runs"
     diff = arguments.add_command(actions, "diff", summary, run_diff, examples[1])
     diff.add_argument("before", metavar="BEFORE", help="folder of a report, or its results.json")
-    diff.add_argument("after", metavar="AFTER", help="the same of a later run")
+    diff.add_argument("after", metavar="AFTER", help="the same for a later run")
     arguments.add_shared(diff, "--json")
     summary = "show the renderers of many reports on one page"
     field = arguments.add_command(actions, "field", summary, run_field, examples[2])

@@ -118,7 +118,7 @@ HOSTS = (
     # of Cycles agrees with QON for s < 0.
     Row("cycles", "osl", "pictures", scenes=(SIDE, BACK), front_lit=("qon",)),
     Row("testrender", "osl", "rendered", surfaces=True),
-    Row("msl", "msl", needs="Metal, which macOS alone has"),
+    Row("msl", "msl", needs="Metal, which only macOS has"),
     Row("mdl", "mdl", needs="a renderer that compiles MDL"),
 )
 
@@ -178,10 +178,10 @@ def open_engine(name: str, *additional: Row) -> Engine:
     if _OPENED - {os.getpid()}:
         raise NotRun(
             f"{name}: this process was forked from one that had opened an engine, whose threads are "
-            "missing here: pass workers=1, or start processes by the method spawn"
+            "missing here: pass workers=1, or use the start method spawn"
         )
     if row.needs:
-        raise NotRun(f"{name}: running it needs {row.needs}; its text is checked")
+        raise NotRun(f"{name}: running it needs {row.needs}; only its source is checked")
     if row.target and row.target not in TARGETS:
         import MaterialX as mx
 

@@ -174,7 +174,7 @@ class Host(Engine):
 
     def _drawn_table(self, text: str) -> Array:
         """Texels of a table of GGX albedos. Row 0 is for the smallest alpha."""
-        raise NotRun(f"{self.name}: albedo table: this host binds none")
+        raise NotRun(f"{self.name}: this host binds no albedo table")
 
     def picture(self, shader: Shader, scene: Scene) -> Array:
         """Linear picture of the unit sphere with a shader, row 0 at the top.

@@ -41,7 +41,7 @@ class PairHost(base.Host):
         through = output == "throughput"
         if irradiance is not None or (branch == TRANSMITTED and not through):
             raise self._unsupported(
-                "uneven environment, and none that is only below the surface", "gl"
+                "uneven environment, and no environment only below the surface", "gl"
             )
         if branch == DIRECT and output == "response":
             if not visible(wo, wi).all():

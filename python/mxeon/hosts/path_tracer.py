@@ -76,7 +76,7 @@ class PathTracerHost(gl.GlHost):
             import pyoidn  # part of the `render` extra; the import is slow
 
             image = pyoidn.denoise(image, hdr=True)
-            note += ", removed by Open Image Denoise; --samples N keeps it"
+            note += ", removed by Open Image Denoise; --samples N turns this off"
         elif noise > NOISY:
             note = f"{shader.element}: still noisy ({100.0 * noise:.2g} %); try --samples {16 * samples}"
         warnings.warn(NoiseNote(note), stacklevel=2)

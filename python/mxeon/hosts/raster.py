@@ -45,9 +45,9 @@ TRIANGLE = {  # attributes of a triangle's three vertices
 
 INNER_APPROXIMATIONS = {
     SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred as on a sphere of the "
-    "surface's curvature, and under an environment it is Lambert of its color",
-    TRANSMISSION: "transmission is rasterized: what is seen through the surface is the environment "
-    "in one refracted direction, and no light that the object itself bends or blocks",
+    "surface's curvature, and under an environment it is Lambertian",
+    TRANSMISSION: "transmission is rasterized: the surface shows the environment in one "
+    "refracted direction, without light that the object itself bends or blocks",
     VOLUME: "a volume is rasterized: it absorbs over a length of 1 and scatters nothing",
 }
 

@@ -83,7 +83,7 @@ class ShadewireHost(base.Host):
         self.refuse_paths(scene)
         self.refuse_shape(scene)
         if scene.environment is not None:
-            raise NotRun("shadewire: light must be distant; it has no lookups of an environment")
+            raise NotRun("shadewire: light must be distant; it cannot look up environments")
         points = sphere(scene.size)
         normal = points.normal[points.mask]
         frame = {SURFACE: normal, "normal": normal, "tangent": tangents(normal)}
@@ -95,14 +95,14 @@ class ShadewireHost(base.Host):
 
     def unread(self, shader: Shader) -> str:
         if SUBSURFACE in inner_lobes(shader):
-            return "subsurface scattering is Lambertian, as its text says"
+            return "subsurface scattering is Lambertian, as its source says"
         return ""
 
     def _values(self, query: Query) -> Array:
         shader, wo, wi, inputs, branch, output, irradiance, _ = query
         value = OUTPUTS.get(output) or RESPONSES.get(branch)
         if value is None or irradiance is not None:
-            raise self._unsupported("lookups of an environment, only albedos", "gl")
+            raise self._unsupported("environment lookups, only albedos", "gl")
         return self._evaluated(shader, wo, wi, inputs, value)
 
     def _evaluated(
@@ -125,7 +125,7 @@ class ShadewireHost(base.Host):
         needed = set(re.findall(r"shadewire_host_\w+(?=\(\);)", text))
         if missing := needed - set(re.findall(r"shadewire_host_\w+(?=\(\) \{)", text)):
             raise NotRun(
-                f"shadewire: its text calls {', '.join(sorted(missing))}, which mxeon does not define"
+                f"shadewire: its source calls {', '.join(sorted(missing))}, which mxeon does not define"
             )
         body = [f"host_{name} = {name};" for name in [*arguments][3:]]
         body.append("Surface surface = shadewire_eval_surface();")

@@ -28,7 +28,7 @@ from mxeon.jobs import WAIT, check_timeout
 from mxeon.jobs.pool import Outcome, log_bug
 
 ANSWER = 10.0  # maximum seconds for a scheduler's answer
-GONE = "scheduler must run until the end; it answers no more"
+GONE = "scheduler must run until the end; it no longer answers"
 LOGGERS = ("distributed", "tornado", "asyncio")
 WINDOW = 2  # items in flight per worker; more items would fill memory and starve new workers
 POLL = 1.0  # seconds between polls for new and lost workers

@@ -36,7 +36,7 @@ SOFTWARE = ("numpy", "scipy", "OpenImageIO")
 # Keys of kit.json that must match exactly. The key `scenes` is left out, because the last digits of
 # the scenes depend on the exporting machine.
 EXACT = ("camera", "sphere", "materials", "pictures")
-READABLE = "The picture is there, of the right size, linear float, and finite."
+READABLE = "The picture exists and has the right size and finite, linear floats."
 CHANNELS = "RGB"
 LEVELS = 255  # largest eight-bit value
 ROUNDED = LEVELS * 2.0**-12  # largest rounding of a half float below 1, in eight-bit steps
@@ -101,7 +101,7 @@ def check_kit(
             )
     if all(each.verdict == NOT_RUN for each in results) and not images:
         raise NotRun(
-            f"{folder / RENDERS}: none of the {len(needed)} pictures is there: make them as "
+            f"{folder / RENDERS}: none of the {len(needed)} pictures exists: render them as "
             f"{folder / 'README.md'} describes"
         )
     # The question about light and encoding comes first. If the setup is wrong, models are
@@ -210,14 +210,14 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
     try:
         channels = _channels(spec.channelnames)
     except UnicodeDecodeError:
-        raise Unusable("must have names of channels in UTF-8") from None
+        raise Unusable("must have channel names in UTF-8") from None
     # Only red, green and blue are read, because even a small file may have thousands of channels.
     read = [image.read_image(0, 0, each, each + 1, oiio.FLOAT) for each in channels]
     pixels = [each for each in read if each is not None]
     reason = on_one_line(image.geterror)
     image.close()
     if reason or len(pixels) < len(read):
-        raise Unusable(f"must be a whole image; {reason}")
+        raise Unusable(f"must be a complete image; {reason}")
     return np.concatenate(pixels, axis=-1, dtype=np.float64)
 
 
@@ -240,5 +240,5 @@ def _check_depth(values: NDArray[np.float64]) -> None:
     steps = values * LEVELS
     rounded = values.max() <= 1.0 and np.abs(steps - np.rint(steps)).max() <= ROUNDED
     if 2 < distinct < len(values) / DISTINCT and rounded:
-        rule = "must hold numbers that were never rounded to eight bits"
+        rule = "must hold numbers that were never quantized to 8 bits"
         raise Unusable(f"{rule}; got multiples of 1/255")

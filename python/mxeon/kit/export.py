@@ -51,7 +51,7 @@ def kit_node(category: str, definitions: tuple[str, ...] = (), library: str = "e
         if each.getType() == "BSDF" and not missing:
             flagged = ports.get(FLAG) == "boolean"
             return KitNode(category, each.getName(), flagged, (library, *definitions))
-        reason = f", which lacks {' and '.join(missing)}" if missing else ", which is none"
+        reason = f", which lacks {' and '.join(missing)}" if missing else ", which is no BSDF"
     known = {each.getNodeString() for each in data.getNodeDefs() if each.getType() == "BSDF"}
     reason = reason or meant(category, known) or ": load its definition by --definitions FOLDER"
     raise InputError(
@@ -169,4 +169,4 @@ def _light_in_words(scene: Scene) -> str:
     if scene.light is None:
         return f"uniform environment of radiance {scene.environment:g} on all sides"
     direction = ", ".join(f"{each:.6f}" for each in scene.light)
-    return f"distant light, no angular size, irradiance pi, towards it: ({direction})"
+    return f"distant light of irradiance pi, without angular size, in direction ({direction})"

@@ -146,9 +146,10 @@ def nearest(ranking: Sequence[ModelDistance]) -> results.Diagnosis:
 
 
 DERIVATION = (
-    "Student's t of each tile's mean error over its noise, Bonferroni over all tiles, channels and "
-    f"questions: a kit of correct pictures fails with probability {1.0 - CONFIDENCE:.1g}; added are "
-    "a pixel's mean against its center, the depth of the mesh, and rounding to half"
+    "Student's t of each tile's mean error divided by its noise, with Bonferroni's correction for "
+    "all tiles, channels and questions: a kit of correct pictures fails with probability "
+    f"{1.0 - CONFIDENCE:.1g}; plus the difference between a pixel's mean and its center, the depth "
+    "of the mesh, and rounding to half"
 )
 
 
@@ -183,8 +184,8 @@ def control(name: str, factor: float = 1.0) -> Callable[[View], NDArray[np.float
     return lambda view: factor * pixel_means(reference.diffuse_model(name), view)
 
 
-SETUP = "Lambert under a distant light has the right light, orientation and encoding."
-MODEL = "The pictures equal the model, up to noise and the depth of a mesh."
+SETUP = "The Lambert picture has the right brightness, orientation and encoding."
+MODEL = "The pictures equal the model, up to noise and errors of a mesh."
 BLACK = "A black surface reflects nothing."
 WHITE = "A white surface in a white environment is invisible."
 DROPPED, STUCK = "the flag is dropped", "the flag is stuck"

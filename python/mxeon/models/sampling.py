@@ -208,7 +208,7 @@ def eon_sample(
     wo, u, roughness, rho = checked_draw(wo, u, roughness=roughness, rho=rho)
     if wo.ndim == 1 and tuple(u.shape) == (3, 2) and tuple(rho.shape) == (3,):
         raise ValueError(
-            "rho of shape (3,) beside 3 samples has two meanings: write rho.mean() for a color, or "
+            "rho of shape (3,) with 3 samples is ambiguous: write rho.mean() for a color, or "
             "repeat wo for a number for each sample"
         )
     u1, u2 = unpack_uniforms(u)

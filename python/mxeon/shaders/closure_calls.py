@@ -42,7 +42,7 @@ def check_closure_calls(
                 continue
             if len(nodes) > 1:
                 raise ShaderError(
-                    f"{target}: the implementations of {' and '.join(nodes)} name one function, {function}"
+                    f"{target}: the implementations of {' and '.join(nodes)} name the same function, {function}"
                 )
             raise InterfaceError(
                 f"{target}: MaterialX {mx.getVersionString()} does not call eonlib's function "

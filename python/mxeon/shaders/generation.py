@@ -217,7 +217,7 @@ def generate(
             if "nodedef" in reason:
                 reason += ": load further definitions by --definitions FOLDER"
             raise DocumentError(
-                f'{label(content)}: element "{path}" must give {target}; {reason}'
+                f'{label(content)}: element "{path}" must generate {target}; {reason}'
             ) from None
         check_closure_calls(source.getStage("pixel"), target, library, profile)
         stages = MappingProxyType(
@@ -228,7 +228,7 @@ def generate(
         if token := unreplaced_token("\n".join(stages.values())):
             raise InterfaceError(
                 f"{target}: the generator of MaterialX {mx.getVersionString()} does not replace "
-                f"{token} in the library's sources; use those of its version"
+                f"{token} in the library's sources; use a library for this version"
             )
         inputs, name = _inputs(source, content), source.getName()
         if profile == "path":
@@ -300,7 +300,7 @@ def check_generator(library: str, target: str) -> None:
     if reason:
         raise InterfaceError(
             f"library {library}: cannot be combined with the generator of MaterialX "
-            f"{mx.getVersionString()}; {reason}: name its build with --materialx"
+            f"{mx.getVersionString()}; {reason}: pass the right MaterialX build with --materialx"
         )
 
 

@@ -93,13 +93,13 @@ def approximations(scene: Scene, lobes: Sequence[str]) -> tuple[str, ...]:
     paths, reasons = request(scene, lobes), []
     if paths["samples"] < FEWEST_SAMPLES:
         reasons.append(
-            f"{' and '.join(lobes)}: needs at least {FEWEST_SAMPLES} samples of a pixel; with "
-            f"{paths['samples']} the picture is noise"
+            f"{' and '.join(lobes)}: needs at least {FEWEST_SAMPLES} samples per pixel; with "
+            f"{paths['samples']}, the picture is noise"
         )
     if paths["bounces"] < _bounces(lobes):
         reasons.append(
             f"{' and '.join(lobes)}: needs {_bounces(lobes)} bounces; with {paths['bounces']} the "
-            "light of longer paths is missing"
+            "light on longer paths is missing"
         )
     return tuple(reasons)
 

@@ -61,7 +61,7 @@ class StormHost(DocumentHost):
                 names.append(f"{node.getName()}/{each.getName()}")
         if not names:
             return ""
-        return f"Storm takes the default of an enumerated input, here of {', '.join(names)}"
+        return f"Storm uses the default of enumerated inputs, here of {', '.join(names)}"
 
     def _interpreter(self) -> Path:
         return interpreter(self.name)
@@ -77,7 +77,7 @@ class StormHost(DocumentHost):
     def _document(self, shader: Shader) -> tuple[str, str]:
         element = shader.document.getDescendant(shader.element)
         if element.getCategory() != mx.SURFACE_MATERIAL_NODE_STRING:
-            raise NotRun(f"storm: element {shader.element!r} must be a material, as USD binds one")
+            raise NotRun(f"storm: element {shader.element!r} must be a material for USD to bind")
         return super()._document(shader)
 
     def _check(self, error: str, printed: Sequence[str]) -> None:

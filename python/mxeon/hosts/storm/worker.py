@@ -167,7 +167,7 @@ class Stage:
         references.AddReference(document, "/MaterialX")
         prim = self._stage.GetPrimAtPath(f"/look/Materials/{element}")
         if not prim:
-            raise LookupError(f"OpenUSD has read no material {element}")
+            raise LookupError(f"OpenUSD found no material {element}")
         binding = usd.UsdShade.MaterialBindingAPI.Apply(self._mesh.GetPrim())
         binding.Bind(usd.UsdShade.Material(prim))
         self._sun.GetPrim().SetActive(light is not None)

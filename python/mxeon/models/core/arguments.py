@@ -99,7 +99,7 @@ def refuse_ambiguous(name: str, color: Numbers, lead: tuple[int, ...]) -> None:
     if color.shape == lead and color.ndim == 1 and color.shape[0] not in (1, 3):
         count = color.shape[0]
         raise ValueError(
-            f"{name} of shape ({count},) beside {count} directions has two meanings: write "
+            f"{name} of shape ({count},) with {count} directions is ambiguous: write "
             f"{name}[:, np.newaxis] for a number for each direction, {name}[np.newaxis] for a "
             f"color of {count} channels"
         )
@@ -342,7 +342,7 @@ def refuse_direction(name: str, w: Numbers) -> NoReturn:
     with np.errstate(over="ignore"):
         length = np.sum(np.square(w, dtype=np.float64), axis=-1)
     unit = np.abs(length - 1.0) <= UNIT_TOLERANCE
-    _refuse(f"{name} must be unit vectors to {UNIT_TOLERANCE}", length, unit, "squared length ")
+    _refuse(f"{name} must be unit vectors within {UNIT_TOLERANCE}", length, unit, "squared length ")
 
 
 def _array(name: str, value: ArrayLike, check: Callable[[Numbers], Numbers]) -> Numbers:

@@ -63,7 +63,7 @@ def check_shaders(
         graph = reachable([element.getNamePath()], lambda path: _upstream(document, path))
         order = _ordered(graph, f"{title}: node", "be upstream of itself")
         longest = max(heights(graph, order).values())
-        policy.check_limit("chain", longest, rule, "nodes in a row")
+        policy.check_limit("chain", longest, rule, "nodes in a chain")
         for path in order:
             definition = _definition(document.getDescendant(path))
             total += counts[definition]
@@ -111,7 +111,7 @@ def check_inheritance(document: mx.Document, policy: Policy) -> None:
     order = _ordered(graph, f"{label(document)}: definition", "inherit itself")
     deepest = max(heights(graph, order).values(), default=0)
     rule = f"{label(document)}: must have"
-    policy.check_limit("depth", deepest, rule, "definitions that inherit each other")
+    policy.check_limit("depth", deepest, rule, "definitions in a chain of inheritance")
 
 
 def check_interfaces(document: mx.Document, elements: Sequence[mx.Element], policy: Policy) -> None:
@@ -134,7 +134,7 @@ class _NodeCounts(dict[str, int]):
         order = _ordered(graph, f"{title}: nodedef", "contain itself")
         deepest = max(heights(graph, order).values())
         rule = f"{title}: must have"
-        self._policy.check_limit("depth", deepest, rule, "nodegraphs within each other")
+        self._policy.check_limit("depth", deepest, rule, "nested nodegraphs")
         for part in order:
             self[part] = 1 + sum(self[each] for each in graph[part])
         return self[name]

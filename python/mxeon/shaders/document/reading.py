@@ -196,7 +196,7 @@ class _Reader:
         def start(category: str, attributes: Mapping[str, str]) -> None:
             self._elements += 1
             self._attributes += len(attributes)
-            limit("depth", len(names), unit="elements within each other")
+            limit("depth", len(names), unit="nested elements")
             limit("elements", self._elements, unit="elements, with all that it includes")
             limit("attributes", self._attributes, unit="attributes, with all that it includes")
             for key, value in attributes.items():
@@ -209,7 +209,7 @@ class _Reader:
                 rule = f"must have a name of at most {LONGEST_NAME} characters"
                 raise DocumentError(f"{title}: {category} {rule}; got {name}")
             if name in names[-1]:
-                rule = "must have another name than its siblings; MaterialX ignores it"
+                rule = "must have a name that no sibling has; MaterialX ignores it"
                 ignored.append(f"{title}: {category} {name!r} {rule}")
             names[-1] |= {name} - {""}
             names.append(set())
@@ -241,7 +241,7 @@ class _Reader:
         references.check_inside(path, self._home, self._policy, f"{title}: include")
         if path in self._open:
             raise DocumentError(f"{rule} not lead back to the same document; got {name}")
-        self._policy.check_limit("includes", len(self._open), f"{rule} be", "in a row")
+        self._policy.check_limit("includes", len(self._open), f"{rule} be", "deep")
         if not os.path.isfile(path):
             raise DocumentError(f"{rule} name a file that exists; got {name}")
         self.read_file(document, path)

@@ -83,7 +83,7 @@ def missing_fault(document: mx.Document, path: str, name: str) -> str:
     if files(folder(document) / name):
         return ""
     rule = f'{label(document)}: input "{path}" must name a file that exists; got {name}'
-    return f"{rule}: --path FOLDER says where it lies"
+    return f"{rule}: pass its folder as --path FOLDER"
 
 
 def files(path: Path) -> list[Path]:

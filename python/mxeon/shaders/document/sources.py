@@ -74,7 +74,7 @@ def check_sources(
             continue
         read.add(path)
         references.check_inside(path, references.folder(document), policy, prefix)
-        policy.check_limit("includes", depth or 0, f"{path}: must be included by", "files in a row")
+        policy.check_limit("includes", depth or 0, f"{path}: must be included by", "nested files")
         try:
             data = read_source(path, policy.size - size)
             size += len(data)
