@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Storm and MaterialX's renderer: models from all sides, defects of stock MaterialX, failures."""
 
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -10,10 +11,10 @@ from mxeon.errors import NotRun, ShaderError
 from mxeon.hosts import host_row, materialx, storm
 from mxeon.shaders.library import examples_folder
 from mxeon.shaders.methods import Methods
-from mxeon.shaders.nodes import OREN_NAYAR, material_text
+from mxeon.shaders.nodes import OREN_NAYAR, document_text, material_text
 from mxeon.shaders.scene import FRONT, FURNACE, SIDE, sphere
 from tests.support.cases import direction
-from tests.support.documents import lobe, material, surface, written
+from tests.support.documents import image, lobe, material, surface, written
 from tests.support.verdicts import FAILED, PASSED, has
 from tests.support.wrong_libraries import wrong_copy
 
@@ -49,6 +50,27 @@ def test_textures_are_those_of_the_reference(host, reference):
     difference = host.picture(shader, scene) - reference.picture(shader, scene)
     facing = sphere(128).normal[..., 2:]
     assert np.abs(difference * facing).max() <= TEXTURED + HALF
+
+
+def test_a_textured_material_is_seen_at_the_exact_points(on_storm, tmp_path):
+    """Storm renders a material with a texture in blocks of pixels, here one that emits positions."""
+    nodes = (
+        '<position name="point" type="vector3"><input name="space" type="string" value="world"/>'
+        '</position><convert name="color" type="color3"><input name="in" type="vector3"'
+        ' nodename="point"/></convert><mix name="mixed" type="color3"><input name="fg" type="color3"'
+        ' nodename="image"/><input name="bg" type="color3" nodename="color"/></mix>'
+        '<uniform_edf name="edf" type="EDF"><input name="color" type="color3" nodename="mixed"/>'
+        '</uniform_edf><surface name="shading" type="surfaceshader"><input name="edf" type="EDF"'
+        ' nodename="edf"/></surface>'
+    )
+    shutil.copy(examples_folder() / "textures" / "brick_color.png", tmp_path)
+    text = document_text(image("brick_color.png") + nodes)
+    [shader] = on_storm.compile(written(tmp_path, text))
+    points = sphere(16)
+    seen = points.mask & (points.position.min(axis=-1) > 0.0)  # emission is not negative
+    # Storm's camera is so far away that float32 rounds z to a sixteenth.
+    found, exact = on_storm.picture(shader, SMALL)[seen], points.position[seen]
+    assert np.abs(found - exact)[:, :2].max() <= HALF
 
 
 def test_subsurface_scattering_on_flat_quads_is_not_judged(host, judged, tmp_path):

@@ -40,6 +40,8 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
     positions have the same derivatives as on the sphere. `place` is the offset of this point from
     the quad's center, in half widths. Texture coordinates vary less than on the sphere, so textures
     are read at full size. Quads are ordered by row from the top, vertices counterclockwise.
+    `center` is the point that the middle of the picture must show, which centers each quad in its
+    pixel.
     """
     points = sphere(size)
     normal = points.normal[points.mask][:, np.newaxis]
@@ -58,10 +60,11 @@ def quads(size: int, place: tuple[float, float] = (0.0, 0.0)) -> dict[str, NDArr
         "normal": np.broadcast_to(normal, position.shape),
         "texcoord": np.stack([u, v], axis=-1),
     }
-    return {
+    vertices = {
         name: values.reshape(-1, values.shape[-1]).astype(np.float32)
         for name, values in columns.items()
     }
+    return vertices | {"center": -np.asarray(place, np.float32) / np.float32(size)}
 
 
 # If a triangle must cover a block of 2 x 2 pixels, each quad has 4 x 4 pixels. Only one pixel is

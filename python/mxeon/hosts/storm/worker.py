@@ -152,9 +152,10 @@ class Stage:
         environment: float | None,
         card: bool = False,
     ) -> Pixels:
-        """Picture of the square [-1, 1]^2, seen along -z."""
+        """Picture of a square with sides of length 2, seen along -z."""
         if mesh != self._mesh_path:
             data, self._mesh_path = np.load(mesh), mesh
+            self._center = usd.Gf.Vec3d(*map(float, data["center"]), FAR)
             count = len(data["position"])
             vectors, numbers = usd.Vt.Vec3fArray.FromNumpy, usd.Vt.IntArray.FromNumpy
             self._mesh.CreatePointsAttr(vectors(data["position"]))
@@ -181,7 +182,7 @@ class Stage:
         frustum = usd.Gf.Frustum()
         frustum.projectionType = usd.Gf.Frustum.Orthographic
         frustum.window = usd.Gf.Range2d((-1.0, -1.0), (1.0, 1.0))
-        frustum.position = usd.Gf.Vec3d(0.0, 0.0, FAR)
+        frustum.position = self._center
         frustum.nearFar = usd.Gf.Range1d(FAR - 4.0, FAR + 4.0)
         view, projection = frustum.ComputeViewMatrix(), frustum.ComputeProjectionMatrix()
         self._engine.SetCameraState(view, projection)
