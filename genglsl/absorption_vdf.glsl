@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node absorption_vdf: transmittance of one meter of a medium, by Beer's law.
 
 #include "lib/medium.glsl"
+
+// Node absorption_vdf: transmittance of one meter of a medium, by Beer's law.
 
 void absorption_vdf(ClosureData closureData, vec3 absorption, inout EONLIB_VDF vdf)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node add for two BSDFs. The throughput, 1 minus both albedos, may be negative.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+// Node add for two BSDFs. The throughput, 1 minus both albedos, may be negative.
 
 void add_bsdf(ClosureData closureData, BSDF in1, BSDF in2, out BSDF result)
 {

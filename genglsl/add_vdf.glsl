@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node add for two media: coefficients are added.
 
 #include "lib/medium.glsl"
+
+// Node add for two media: coefficients are added.
 
 void add_vdf(ClosureData closureData, EONLIB_VDF in1, EONLIB_VDF in2, out EONLIB_VDF result)
 {

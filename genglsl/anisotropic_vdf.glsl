@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node anisotropic_vdf: transmittance of one meter that absorbs and scatters. Light scattered into
-// the ray is ignored, so the anisotropy has no effect.
 
 #include "lib/medium.glsl"
+
+// Node anisotropic_vdf: transmittance of one meter that absorbs and scatters. Light scattered into
+// the ray is ignored, so the anisotropy has no effect.
 
 void anisotropic_vdf(ClosureData closureData, vec3 absorption, vec3 scattering, float anisotropy,
                      inout EONLIB_VDF vdf)

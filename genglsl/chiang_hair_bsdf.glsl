@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
+
 // Node chiang_hair_bsdf: [MaterialX2026], Chiang Hair Model. The lobe p is A_p M_p N_p.
 //
 // Roughness is at least 1e-8 rad^2 along and 1e-4 rad around the fiber, to suit float32. In the
 // local frame, x is the fiber and z is the normal.
-
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
-#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 
 // Scaled Bessel function exp(-x) I_0(x) for x >= 0: [AbramowitzStegun1964], 9.8.1 and 9.8.2.
 // Relative error: 5e-7.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node conductor_bsdf, a lobe that only reflects.
 
 #include "lib/microfacet_film.glsl"
 #include "lib/fresnel_conductor.glsl"
+
+// Node conductor_bsdf, a lobe that only reflects.
 
 // Least ior. If ior and extinction were 0, MaterialX's Fresnel curve would be 0 /
 // 0 along the normal.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node conical_edf, which emits light in a cone around the normal.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+// Node conical_edf, which emits light in a cone around the normal.
 
 // Cosine of half an opening angle in degrees, as 1 - 2 sin^2(angle / 4). The sine is a series with
 // an error of 7e-10 in [0, pi / 2], because built-in cosines may be off by 2e-4.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node dielectric_bsdf. If ior is 0, the lobe reflects all light.
 
 #include "lib/microfacet_transmission.glsl"
 #include "lib/fresnel_dielectric.glsl"
+
+// Node dielectric_bsdf. If ior is 0, the lobe reflects all light.
 
 void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior, vec2 roughness,
                      bool retroreflective, float thinfilm_thickness, float thinfilm_ior, vec3 N,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node layer for two lobes. The throughput of the top (at least 0) multiplies the base.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+// Node layer for two lobes. The throughput of the top (at least 0) multiplies the base.
 
 void layer_bsdf(ClosureData closureData, BSDF top, BSDF base, out BSDF result)
 {

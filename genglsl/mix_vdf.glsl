@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node mix for two media. Coefficients are interpolated, so powers of transmittances are
-// multiplied.
 
 #include "lib/medium.glsl"
+
+// Node mix for two media. Coefficients are interpolated, so powers of transmittances are
+// multiplied.
 
 void mix_vdf(ClosureData closureData, EONLIB_VDF fg, EONLIB_VDF bg, float mixValue, out EONLIB_VDF result)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node multiply for a BSDF and a color that scales response and albedo.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+// Node multiply for a BSDF and a color that scales response and albedo.
 
 void multiply_bsdfC(ClosureData closureData, BSDF in1, vec3 in2, out BSDF result)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node multiply for a BSDF and a number that scales response and albedo.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+
+// Node multiply for a BSDF and a number that scales response and albedo.
 
 void multiply_bsdfF(ClosureData closureData, BSDF in1, float in2, out BSDF result)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node multiply for a medium and a color that scales the coefficients.
 
 #include "lib/medium.glsl"
+
+// Node multiply for a medium and a color that scales the coefficients.
 
 void multiply_vdfC(ClosureData closureData, EONLIB_VDF in1, vec3 in2, out EONLIB_VDF result)
 {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node multiply for a medium and a number that scales the coefficients.
 
 #include "lib/medium.glsl"
+
+// Node multiply for a medium and a number that scales the coefficients.
 
 void multiply_vdfF(ClosureData closureData, EONLIB_VDF in1, float in2, out EONLIB_VDF result)
 {

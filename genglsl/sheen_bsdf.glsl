@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node sheen_bsdf, with the modes 0 (Conty-Kulla) and 1 (Zeltner).
-//
-// Mode 0 clamps roughness to [1e-4, 1], the domain of the fit of the albedo.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_sheen.glsl"
 #include "lib/conty_kulla_albedo.glsl"
 #include "lib/half_vector.glsl"
+
+// Node sheen_bsdf, with the modes 0 (Conty-Kulla) and 1 (Zeltner).
+//
+// Mode 0 clamps roughness to [1e-4, 1], the domain of the fit of the albedo.
 
 // log(sin^2) of the angle between N and the half vector H. If the cosine is small, the code uses a
 // series up to the cosine's eighth power. Relative error: 2e-9.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node subsurface_bsdf. The diffusion profile blurs the light on a sphere that has the curvature of
-// the surface.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 #include "lib/subsurface_blur.glsl"
+
+// Node subsurface_bsdf. The diffusion profile blurs the light on a sphere that has the curvature of
+// the surface.
 
 void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 radius,
                      float anisotropy, vec3 N, inout BSDF bsdf)

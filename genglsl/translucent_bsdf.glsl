@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Node translucent_bsdf. Light comes from the side that the viewer does not see.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
+
+// Node translucent_bsdf. Light comes from the side that the viewer does not see.
 
 void translucent_bsdf(ClosureData closureData, float weight, vec3 color, vec3 N, inout BSDF bsdf)
 {

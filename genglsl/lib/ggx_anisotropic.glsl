@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "ggx_albedo.glsl"
+
 // Isotropic GGX facets that represent anisotropic facets in fits. wo is in the tangent frame.
 // Source and equations: tools/fits/ggx_anisotropic.py. Domain: alphas in [1e-3, 1] with a ratio up
 // to 50, cosines from 0.01. Largest relative error of E_ss: 2.5e-2. Largest absolute error of a
 // dielectric's albedo: 3.4e-2.
-
-#include "ggx_albedo.glsl"
 
 // Returns (mu, alpha, k), where 1 - E_ss is k ggx_missing(mu, alpha). `visible` is (mu, alpha) for
 // averages over visible facets.

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reflectance F_airy of a microfacet lobe under a thin film: at the half vector, and averaged over
-// the hemisphere (F_ss) and over visible facets. An average is a sum over three cosines
-// (nodes), each with a width over which fringes partly cancel.
 
 #include "microfacet_lobe.glsl"
 #include "thin_film.glsl"
+
+// Reflectance F_airy of a microfacet lobe under a thin film: at the half vector, and averaged over
+// the hemisphere (F_ss) and over visible facets. An average is a sum over three cosines
+// (nodes), each with a width over which fringes partly cancel.
 
 // Cosine, weight and width of the nodes of F_ss. Source: tools/fits/thin_film_nodes.py. Domain:
 // films up to 1000 nm with index in [1, 2.5]. Largest error: 3.61e-2, or 4.4e-3 for a vanishing

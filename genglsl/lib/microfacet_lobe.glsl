@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Geometry, reflectances and reflection of a GGX lobe.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 #include "ggx_anisotropic.glsl"
 #include "half_vector.glsl"
+
+// Geometry, reflectances and reflection of a GGX lobe.
 
 // Least ior. In float32, 1 + ior^2 is 1 below 2.4e-4, and MaterialX's curve is 0 / 0 along the
 // normal.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light through a microfacet surface, and lobes that may transmit.
 
 #include "microfacet_film.glsl"
+
+// Light through a microfacet surface, and lobes that may transmit.
 
 // Light through a surface that transmits the fraction `share`. MaterialX refracts the view twice,
 // as in a solid sphere. If MaterialX renders transmission as opacity, the result is the tint.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Response of a rough diffuse lobe for two nodes. With energy_compensation, the model is EON,
-// otherwise qualitative Oren-Nayar.
-//
-// Inputs are not clamped. Results are finite for roughness in [-1, 10] and colors up to 1.
 
 #include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
 #include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 #include "eon.glsl"
+
+// Response of a rough diffuse lobe for two nodes. With energy_compensation, the model is EON,
+// otherwise qualitative Oren-Nayar.
+//
+// Inputs are not clamped. Results are finite for roughness in [-1, 10] and colors up to 1.
 
 void oren_nayar_lobe(ClosureData closureData, float weight, vec3 color, float roughness,
                      vec3 N, bool energy_compensation, inout BSDF bsdf)

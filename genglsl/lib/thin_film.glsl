@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
+
 // Reflectance F_airy of a film (2) between vacuum (1) and a substrate (3) in linear Rec. 709:
 // [MaterialX2026], Thin-Film Iridescence Model, whose sections are named below. Each color channel
 // has its own substrate. python/mxeon/models/thin_film.py explains the complex z = r_21 r_23.
-
-#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
 // Section Spectral Sensitivity: two Gaussians for X, one for Y, one for Z. Positions mu_k are
 // in 1/m. Variances sigma_k^2 are in 1/m^2, and the first is the smallest. Heights are

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Combinations of two closures for path tracers. A draw chooses either closure.
 
 #include "lib/questions.glsl"
 #include "../layer_bsdf.glsl"
@@ -8,6 +7,8 @@
 #include "../multiply_bsdfC.glsl"
 #include "libraries/pbrlib/genglsl/mx_mix_bsdf.glsl"
 #include "libraries/pbrlib/genglsl/mx_layer_vdf.glsl"
+
+// Combinations of two closures for path tracers. A draw chooses either closure.
 
 // Draw or density of two closures, whose weights are scaled by the factors.
 void path_combine(vec3 a, vec3 factor_a, vec3 b, vec3 factor_b, inout BSDF result)

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Diffuse lobes for path tracers. Lobes other than EON are drawn in proportion to the cosine.
 
 #include "lib/questions.glsl"
 #include "../oren_nayar_diffuse_bsdf.glsl"
@@ -8,6 +7,8 @@
 #include "../subsurface_bsdf.glsl"
 #include "../translucent_bsdf.glsl"
 #include "../sampling/eon_sampling.glsl"
+
+// Diffuse lobes for path tracers. Lobes other than EON are drawn in proportion to the cosine.
 
 // Draws directions in proportion to EON with the mean of the three color channels.
 void path_eon(vec3 color, float roughness, vec3 N, inout BSDF bsdf)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hair for path tracers. Inclinations are drawn from the distribution M_p of a lobe p as in
-// [dEon2013]. Azimuths are drawn by inversion of N_p, a logistic distribution cut at +-pi. Both
-// distributions describe light tilted by the cuticle, so draws are tilted back.
 
 #include "lib/questions.glsl"
 #include "../chiang_hair_bsdf.glsl"
+
+// Hair for path tracers. Inclinations are drawn from the distribution M_p of a lobe p as in
+// [dEon2013]. Azimuths are drawn by inversion of N_p, a logistic distribution cut at +-pi. Both
+// distributions describe light tilted by the cuticle, so draws are tilted back.
 
 // The lobes R, TT, TRT and TRRT+ for one view. Attenuations `weight` are averaged over colors. The
 // cuticle tilts light by `tilt`. `exit` is the azimuth of a lobe's center. Angles are unit complex

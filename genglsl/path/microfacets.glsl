@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "lib/questions.glsl"
+#include "../lib/microfacet_transmission.glsl"
+#include "../lib/fresnel_dielectric.glsl"
+
 // Microfacet lobes for path tracers: docs/path_tracing.md. Macros replace three functions in the
 // nodes' code.
 //
@@ -10,10 +15,6 @@
 // Transmission out of the denser medium is reciprocal: see python/mxeon/models/transmission.py. Two
 // lobes reflect all other light: a lobe with the Fresnel reflectance from outside (1 beyond the
 // critical angle), and a lobe of perfect mirrors.
-
-#include "lib/questions.glsl"
-#include "../lib/microfacet_transmission.glsl"
-#include "../lib/fresnel_dielectric.glsl"
 
 // Least alpha. Rounded directions cannot resolve narrower lobes.
 #define PATH_LEAST_ALPHA 1e-4

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sheen for path tracers. Zeltner's lobe is drawn as a linearly transformed cosine (LTC). Conty and
-// Kulla's lobe is brightest at the horizon and is drawn uniformly.
 
 #include "lib/questions.glsl"
 #include "../sheen_bsdf.glsl"
+
+// Sheen for path tracers. Zeltner's lobe is drawn as a linearly transformed cosine (LTC). Conty and
+// Kulla's lobe is brightest at the horizon and is drawn uniformly.
 
 // X axis of the frame of zeltner_lobe, in which wo has azimuth 0.
 vec3 path_sheen_across(vec3 N)

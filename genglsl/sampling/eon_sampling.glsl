@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "ltc_sampling.glsl"
+
 // Exact importance sampling of EON with two random numbers.
 //
 // eon_sample draws a direction wi, and eon_pdf is the density of wi in 1/sr. Arguments are as in
 // ltc_sampling. EON is the sum of the parts `flat`, `lower`, `upper` and `multiple`, which
 // docs/sampling.md defines for wo at azimuth 0. mu and S are the cosine and sine of a polar angle,
 // and mu_o and S_o are those of wo. q is roughness times S_o, and v is a random number in [0, 1).
-
-#include "ltc_sampling.glsl"
 
 // Least cosine of a sample.
 #define EON_HORIZON (1.0 / 16777216.0)

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "oren_nayar_family.glsl"
+
 // Sampling of the hemisphere: uniform, by the cosine, by a linearly transformed cosine (LTC), and
 // by a clipped LTC (CLTC).
 //
 // For a lobe x, x_sample draws a direction wi, and x_pdf is the density of wi in 1/sr. Directions
 // are as in oren_nayar_family. u1 and u2 are independent uniform random numbers in [0, 1). d is an
 // entry of the LTC's matrix M, and `turn` is the result of eon_azimuth_frame.
-
-#include "oren_nayar_family.glsl"
 
 // Largest float32 below 1.
 #define EON_BELOW_ONE (1.0 - 1.0 / 16777216.0)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "../lib/eon.glsl"
+
 // Models of the Oren-Nayar family, named as in the Python package.
 //
 // wo and wi are unit vectors that leave the surface, in a local frame with the normal +z, and not
 // below the horizon. BRDFs do not include the cosine. Albedos of QON and FON are for rho = 1.
-
-#include "../lib/eon.glsl"
 
 // Coefficients of G_F / pi: [Portsmouth2025], Eq. (14), for mu in [0, 1]. Largest error: 6.0e-4.
 #define EON_G1 0.0571085289

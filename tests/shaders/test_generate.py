@@ -157,6 +157,7 @@ WRONG = {
     "a derivative after a return, which some pixels have taken": r"(?s)\breturn;(?:(?!\n}).)*\b(?:fwidth|dFd[xy])\(",
     "the half vector of opposite directions": r"normalize\(w[io] \+ w[io]\)",
     "a loop without a count": r"\bwhile \((?![ip] < )",
+    "a header above the includes, which end up between it and its code": r"\A.*\n//(?:.*\n)*#include",
 }
 
 

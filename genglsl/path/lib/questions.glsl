@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
+
 // path_asked selects the `response` of a closure.
 //   PATH_VALUE: f cos(theta_i) for path_wo and path_wi
 //   PATH_PDF: (weight, density of path_wi in 1/sr, 0)
 //   PATH_DRAW: (weight, drawn direction packed into two numbers)
 // The weight is the closure's approximate albedo. Draws choose between two closures by weight, and
 // combined densities are averaged by weight. So densities are exact, although weights are not.
-
-#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"
-#include "libraries/pbrlib/genglsl/lib/mx_microfacet.glsl"
 
 // In an environment of radiance 1, the response to CLOSURE_TYPE_INDIRECT is the albedo. Paths have
 // no derivatives in screen space.

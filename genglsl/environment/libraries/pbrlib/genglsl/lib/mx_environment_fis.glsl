@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
+
 // Sum of an environment over visible facets. Changed from MaterialX's file of this name, Copyright
 // Contributors to the MaterialX Project. Unlike in MaterialX, masking depends on the direction, and
 // reflectances are never negative. This file replaces MaterialX's file for clients that search
 // `genglsl/environment` before MaterialX's data.
-
-#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
 // Refracted light is not divided by G_1 of the view.
 #define MX_REFRACTION_UNMASKED

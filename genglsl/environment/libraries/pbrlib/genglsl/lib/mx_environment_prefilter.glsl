@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+
+#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
+
 // Prefiltered environment with MaterialX's lookup and eonlib's albedo. Changed from MaterialX's
 // file of this name, Copyright Contributors to the MaterialX Project. This file replaces
 // MaterialX's file for clients that search `genglsl/environment` before MaterialX's data.
-
-#include "libraries/pbrlib/genglsl/lib/mx_microfacet_specular.glsl"
 
 #define EONLIB_PREFILTERED
 
