@@ -52,9 +52,9 @@ const BADGES = {
   unknown: "material",
 };
 const VISIBLE = 0.01; // approximate smallest visible difference, as a share of white
-const MEASURING = "Reading its values back.";
+const MEASURING = "Reading back the shader's values.";
 const UNCHECKED = "Not judged here: run mxeon check on a document with these inputs.";
-const UNREAD = "Not measured: this browser draws no shader.";
+const UNREAD = "Not measured: this browser cannot draw shaders.";
 
 /** The verdict on a side for the colors, roughness and light of a view. */
 export function verdictOn(state: State, sources: Sources, side: Side, evidence: Evidence): Verdict {
@@ -120,17 +120,17 @@ function byReference(source: ShaderSource, { able, errors }: Evidence): Verdict 
   const { direct, white } = errors;
   const places = [
     { ...direct, bound: bounds.direct, light: "direct light" },
-    { ...white, bound: bounds.white, light: "white surroundings" },
+    { ...white, bound: bounds.white, light: "a white environment" },
   ].filter(({ error, bound }) => !(error <= bound));
   if (places.length === 0) {
     const [first, second] = [show(direct.error, 2), show(white.error, 2)];
-    const text = `Within ${first} of float64 in direct light, ${second} in white surroundings.`;
+    const text = `Within ${first} of float64 in direct light, ${second} in a white environment.`;
     const kind = direct.error > VISIBLE || white.error > VISIBLE ? "within" : "correct";
     return { kind, badge: BADGES[kind], text };
   }
   const parts = places.map(({ error, light }) => `${show(error, 2)} in ${light}`);
   const title = places.find(({ form }) => form)?.form?.title;
-  const off = `Off by up to ${parts.join(", ")}`;
+  const off = `Error up to ${parts.join(", ")}`;
   const named = title ? `: ${title}` : "";
   // The page has no permitted forms of layers, but each lobe of a layer may have a permitted form.
   if (forms.length === 0) {
@@ -154,10 +154,10 @@ function wrong(actual: Model, meant: Model, state: State): string {
   if (actual.wrong && actual.meant === meant.name) parts.push(actual.wrong);
   const amount = [];
   if (anywhere > 1e-9) {
-    amount.push(`Off by up to ${show(here, 2)} in this light and ${show(anywhere, 2)} in any.`);
+    amount.push(`Error up to ${show(here, 2)} in this light, ${show(anywhere, 2)} in any light.`);
   }
-  if (albedo > 1e-9) amount.push(`In surroundings its albedo is off by up to ${show(albedo, 2)}.`);
-  if (amount.length === 0) amount.push("At this color and roughness both are the same.");
+  if (albedo > 1e-9) amount.push(`In an environment, albedo error up to ${show(albedo, 2)}.`);
+  if (amount.length === 0) amount.push("At this color and roughness, both models are equal.");
   return `${parts.join(": ")}. ${amount.join(" ")}`;
 }
 

@@ -25,7 +25,7 @@ PLAIN = {"shape": "sphere", "surroundings": "none"}
 
 def choose(sheet, key):
     """Compare both libraries on a material, in a view that renders quickly."""
-    group = sheet.get_by_role("group", name="eonlib beside stock MaterialX")
+    group = sheet.get_by_role("group", name="eonlib and stock MaterialX")
     group.locator(f"input[value='{key}/']").check(force=True)
     show(sheet, **PLAIN)
 

@@ -74,9 +74,9 @@ def test_a_slider_changes_the_view_and_the_picture(page, label, field, value, ef
         ("Shape", "cloth", "shape", "cloth"),
         ("Shape", "sphere", "shape", "sphere"),
         ("Shape", "hair", "shape", "fiber"),
-        ("Surroundings", "white", "surroundings", "uniform"),
-        ("Surroundings", "black", "surroundings", "none"),
-        ("Surroundings", "sky", "surroundings", "sky"),
+        ("Environment", "white", "surroundings", "uniform"),
+        ("Environment", "black", "surroundings", "none"),
+        ("Environment", "sky", "surroundings", "sky"),
         ("Compare", "Difference", "comparison", "difference"),
     ],
 )
@@ -102,7 +102,7 @@ def test_the_flag_is_drawn_and_judged(page):
     judged(page, "right", "not EON")
     page.locator(".side.right").get_by_role("checkbox", name="energy_compensation").uncheck()
     judged(page, "right", "not QON")
-    assert "surroundings" in page.locator(".side.right .verdict").inner_text()
+    assert "environment" in page.locator(".side.right .verdict").inner_text()
     page.locator(".side.left").get_by_role("checkbox", name="energy_compensation").uncheck()
     judged(page, "left", "QON")
 
@@ -120,7 +120,7 @@ def test_a_reader_learns_which_is_eon_and_by_how_much_the_other_is_wrong(page):
 
 
 def test_paths_have_samplers_and_count_their_samples(page):
-    page.get_by_label("Path tracing, with light between surfaces").check()
+    page.get_by_label("Path tracing, with interreflections").check()
     fill(page, "Samples per pixel, number", 2)
     page.locator(".side.right").get_by_label("Samples").select_option("cosine")
     side = {"source": "shader/stock", "flag": True, "sampler": "cosine"}

@@ -143,7 +143,7 @@ const ROWS = [
     parameter: "sigma",
     albedoDir: glsl.qon_fitted_albedo_dir,
     meant: "qon",
-    wrong: "wrong in surroundings only: the albedo is off by up to 0.063",
+    wrong: "wrong in an environment only: the albedo has an error up to 0.063",
   },
   {
     name: "qon_tinted_twice",

@@ -28,7 +28,7 @@ export function Dropped({ data, sources, state, change }: ViewProps) {
           `${names[0]}: drop a .mtlx document with its images, or a .hdr or .exr map.`,
         );
       if (data.served) {
-        setMessage(`${first}: making its shaders…`);
+        setMessage(`${first}: generating its shaders…`);
         return setMessage(await sent(files, DOCUMENT.test(first)));
       }
       const own = data.sources.find(

@@ -66,7 +66,7 @@ export function Scene({ data, state, change }: ViewProps) {
         onChange={(shape) => change({ shape })}
       />
       <Choice
-        label="Surroundings"
+        label="Environment"
         value={state.surroundings}
         options={SURROUNDINGS.filter((word) => word !== "own" || data.sky).map(
           (word) => [word, SURROUNDINGS_TITLES[word]] as const,
@@ -74,7 +74,7 @@ export function Scene({ data, state, change }: ViewProps) {
         onChange={(surroundings) => change({ surroundings })}
       />
       <Check
-        label="Path tracing, with light between surfaces"
+        label="Path tracing, with interreflections"
         value={state.paths}
         onChange={(paths) => change({ paths })}
       />

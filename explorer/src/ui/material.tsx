@@ -42,7 +42,7 @@ export function Material({
         onChange={(value) => change({ color: value, keep: false })}
       />
       <table class="albedos">
-        <caption>Color seen: the albedo that comes out</caption>
+        <caption>Color seen: the resulting albedo</caption>
         <thead>
           <tr>
             <td />
@@ -61,7 +61,7 @@ export function Material({
                 ) : of ? (
                   <Albedos of={of} color={color} roughness={roughness} />
                 ) : (
-                  <td colSpan={2}>not one model</td>
+                  <td colSpan={2}>not a diffuse lobe</td>
                 )}
               </tr>
             );

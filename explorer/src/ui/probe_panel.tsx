@@ -53,7 +53,7 @@ export function Probe(props: ProbeProps) {
         <h2>Probe</h2>
         <p class="where">
           {probe
-            ? "The point that was clicked."
+            ? "The clicked point."
             : row !== null
               ? "The sampled directions with the largest error."
               : known

@@ -38,7 +38,7 @@ export function Materials({ data, sources, state, change }: ViewProps) {
   return (
     <section class="materials" aria-label="What to compare">
       <Choice
-        label="eonlib beside stock MaterialX"
+        label="eonlib and stock MaterialX"
         value={stem}
         options={[...materials].map(([key, title]) => [key, title] as const)}
         onChange={(key) => change(withMaterial(state, sources, key))}

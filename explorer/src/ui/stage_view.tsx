@@ -224,7 +224,7 @@ function statusText(status: Status): string {
     case "error":
       return status.message;
     case "lost":
-      return "The browser took the graphics away; the picture comes back by itself.";
+      return "The browser lost the graphics context; the picture will come back.";
   }
 }
 

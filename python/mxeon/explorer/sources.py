@@ -146,7 +146,7 @@ FIRST = ("eon", "qon", "fon", "lambert")
 RENDERERS = (
     (f"MaterialX GLSL, {FLAG} true", "eon_clamped", "eon", "genglsl_clamped_dot"),
     (
-        f"MaterialX GLSL, {FLAG} false, in surroundings",
+        f"MaterialX GLSL, {FLAG} false, in an environment",
         "qon_fitted",
         "qon",
         "genglsl_qon_albedo_fit",

@@ -23,7 +23,7 @@ from mxeon.survey.field import CHECKS, Entry, by_harm
 # Heading and meaning of each column.
 HEADINGS = {
     "direct": ("Direct light", "worst error of π f cos θ over all pairs of directions"),
-    "surroundings": ("Surroundings", "worst error of the albedo in a uniform environment"),
+    "surroundings": ("Environment", "worst error of the albedo in a uniform environment"),
     "energy": ("White furnace", "what a white surface loses or gains"),
     "color": ("Color", "error of the albedo at mixed reflectance"),
     "black": ("Black", "what a black surface scatters"),
