@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The summary that `mxeon check` prints, and its progress lines."""
+"""The summary and the progress lines that `mxeon check` prints."""
 
 import json
 import os

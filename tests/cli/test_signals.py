@@ -97,7 +97,7 @@ sys.exit(main())"""
 
 
 def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # the command `nohup` does the same
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # `nohup` also ignores SIGHUP
     try:
         with raise_signals():
             os.kill(os.getpid(), signal.SIGHUP)

@@ -69,7 +69,7 @@ def watched(page, address, allowed=()):
 def until(page, expression, argument=None, seconds=600):
     """Wait until a JavaScript expression is true, and return its value.
 
-    The security policy of the page blocks playwright's own function for this purpose.
+    The security policy of the page blocks playwright's own function.
     """
     for _ in range(20 * seconds):
         if value := page.evaluate(expression, argument):

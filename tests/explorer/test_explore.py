@@ -168,7 +168,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
                 sizes[each.scene] = apart.max(), seen
         worst, size = max(sizes, key=lambda scene: sizes[scene][0]), result.difference
         assert (size.scene, abs(size.largest), size.visible) == (worst, *map(approx, sizes[worst]))
-        # Every kind of output states the largest of these differences.
+        # Every kind of output states the largest difference.
         sentence, look = words.difference(size), words.look(result)
         assert (entry["library"], entry["difference"]) == (result.library, vars(size))
         assert f"<b>{title}</b> on gl: {look}" in report

@@ -25,7 +25,7 @@ EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 # Errors of pixels stored as half floats: two roundings of 2^-11 in direct light, and four in an
 # environment.
 HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
-TEXTURED = 2.0**-8  # OpenGL guarantees this precision of filter weights
+TEXTURED = 2.0**-8  # precision of filter weights that OpenGL guarantees
 
 
 @pytest.fixture(scope="module", params=HOSTS)

@@ -56,7 +56,7 @@ def test_a_texture_stands_upright(gl, reference, tmp_path):
     image, expected = (picture(host, nodes, front) for host in (gl, reference))
     top, bottom = image[SIZE // 4, SIZE // 2], image[3 * SIZE // 4, SIZE // 2]
     assert top[0] > 0.5 > top[2] and bottom[2] > 0.4 > bottom[0]
-    # OpenGL guarantees this precision of filter weights.
+    # OpenGL guarantees a precision of 2^-8 for filter weights.
     assert np.abs(image - expected)[sphere(SIZE).mask].max() <= 2.0**-8
 
 

@@ -34,7 +34,7 @@ FUNCTIONS = [
     for function in mxeon.model(name).functions
     if function != "brdf"  # `brdf` is another name of `bsdf`
 ]
-# JAX takes seconds to trace these films. test_arrays.py covers their curves.
+# JAX takes seconds to trace films. test_arrays.py covers the curves of films.
 TRACED = [row for row in FUNCTIONS if row[0] not in ("conductor_film", "schlick_film")]
 
 

@@ -252,7 +252,7 @@ PLANTED = {
 }  # fmt: skip
 
 
-# Stock MaterialX is too bright in some samples, which these regressions darken. If a regression is
+# Stock MaterialX is too bright in some samples, which the regressions darken. If a regression is
 # undone, the errors of these samples increase.
 HIDING = ("transmission tinted by color0", "dark hair for some", "another range of blackbodies")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Skips tests whose host, program or package is missing, or fails if MXEON_REQUIRE names it.
+"""Skips tests whose host, program or package is missing, unless MXEON_REQUIRE demands a failure.
 
 MXEON_REQUIRE is a comma-separated list of hosts, in which `packages` stands for all programs and
 Python packages. `./run test --all` lists everything that the command installs.

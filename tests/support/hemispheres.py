@@ -79,7 +79,7 @@ def probability(sample, pdf, wo, u, count=12, nodes=24):
     density = pdf(wo, directions(theta, phi))
     bins = np.einsum("ikjl,ik,jl->ij", density, dtheta * np.sin(theta), dphi)
     mean = len(u) * np.append(1.0 - bins.sum(), bins)
-    # Pool all bins with fewer than 10 expected samples, because their statistic is not chi-square.
+    # Pool all bins with fewer than 10 expected samples, whose statistic is not chi-square.
     likely = mean >= 10.0
     statistic = np.sum((counts - mean)[likely] ** 2 / mean[likely])
     rest = mean[~likely].sum()

@@ -87,9 +87,9 @@ CYCLES_EON_RELATIVE = 6 * ROUNDING_32 / CYCLES_RIM**2 + 1e-5
 # Error of the mean of 3212 pixels in an environment: four standard deviations, rounded up.
 CYCLES_FURNACE_MEAN = 2e-4
 
-# Error of the mean of 208 pixels of a subsurface sphere under a uniform sky. The first term is
-# Cycles' error when it inverts the albedo, measured with 1024 samples. The second term is two
-# standard deviations of the mean with 64 samples.
+# Error of the mean of 208 pixels of a subsurface sphere under a uniform sky. The first term is the
+# error of Cycles' inverted albedo, measured with 1024 samples. The second term is two standard
+# deviations of the mean with 64 samples.
 CYCLES_SUBSURFACE = 0.011 + 2 * 0.05 / 208**0.5
 
 # --- sampling and inversion, float64 ---------------------------------------------------------

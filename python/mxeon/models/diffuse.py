@@ -14,8 +14,8 @@ s / max(mu_o, mu_i) has no limit and counts as 0; value times cosine is 0 in thi
 - `color` (..., C): Desired albedo, in [0, 1].
 
 Result (..., C): BRDF in 1/sr, which is at least 0 and has no upper bound at grazing angles. The
-error is below 1e-14 times the larger of 1 / pi and the largest |s / t| for the same mu_o and mu_i.
-Albedos of FON and QON (...) are for unit reflectance; they have to be multiplied by rho.
+error is below 1e-14 times the larger of 1 / pi and the largest |s / t| for the same mu_o and
+mu_i. Albedos of FON and QON (...) are for unit reflectance, and have to be multiplied by rho.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
 shapes do not broadcast.
@@ -684,7 +684,7 @@ def eon_floor_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, roughness:
 
 
 def qon_tinted_twice_brdf_mu(mu_o: Array, mu_i: Array, s: Array, rho: Array, sigma: Array) -> Array:
-    """QON multiplied by its reflectance a second time.
+    """QON multiplied by the reflectance a second time.
 
     The thin-walled lobe of OpenPBR in MaterialX 1.39.5 has this error (issue 3027 of MaterialX).
     """

@@ -95,7 +95,8 @@ def azimuthal(phi: Array, s: Array) -> Array:
 
 @dataclass(frozen=True)
 class HairForm:
-    """A form of the hair model. The default is the specification's; shaders have other forms.
+    """A form of the hair model. The default is the form in the specification. Shaders use other
+    forms.
 
     - `tilts_light`: True to tilt the light's inclination by the cuticle angle, False to tilt the
       viewer's inclination.
@@ -368,10 +369,9 @@ def deon_hair_absorption_from_melanin(
     - `eumelanin_color`, `pheomelanin_color` (..., 3): Transmittance of the pigment along one fiber
       radius, in (0, 1].
 
-    That the absorptions of both pigments are added is from [dEon2011]. The specification does not
-    say how concentration and redness determine the amount of each pigment. The equation for the
-    amounts is from MaterialX's implementations. [MaterialX2026], section
-    deon_hair_absorption_from_melanin.
+    The sum of both pigments' absorptions is from [dEon2011]. The specification does not say how
+    concentration and redness determine the amount of each pigment. The equation for the amounts is
+    from MaterialX's implementations. [MaterialX2026], section deon_hair_absorption_from_melanin.
 
         >>> colors = np.exp(-np.array(EUMELANIN)), np.exp(-np.array(PHEOMELANIN))
         >>> deon_hair_absorption_from_melanin(0.25, 0.5, *colors).round(6)
@@ -396,7 +396,7 @@ def deon_hair_absorption_from_melanin(
 def chiang_hair_absorption_from_color(
     hair_color: ArrayLike, azimuthal_roughness: ArrayLike
 ) -> Array:
-    """Absorption coefficient of hair that has this color after multiple scattering.
+    """Absorption coefficient of hair whose color after multiple scattering is `hair_color`.
 
         sigma_a = (log(color) / (5.969 - 0.215 b + 2.532 b^2 - 10.73 b^3 + 5.574 b^4 + 0.245 b^5))^2
 

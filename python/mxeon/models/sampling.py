@@ -162,7 +162,7 @@ def azimuth_frame(wo: Array) -> tuple[Array, Array, Array]:
 
 
 def rotate_z(w: Array, cosine: Array, sine: Array) -> Array:
-    """Vectors rotated about the normal by the angle with this cosine and sine."""
+    """Vectors rotated about the normal by the angle with the given cosine and sine."""
     x, y = w[..., 0], w[..., 1]
     return stack_xyz(cosine * x - sine * y, sine * x + cosine * y, w[..., 2])
 

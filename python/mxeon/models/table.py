@@ -24,8 +24,8 @@ class Model(PbrNode):
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
     - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), if a closed form is known.
     - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), if a closed form is known.
-    - `brdf_of`: Name of the model whose `brdf` this model uses with a different albedo. A model
-      with its own `brdf` repeats `name` here.
+    - `brdf_of`: Name of the model from which `brdf` is taken; `name` if no other model has this
+      `brdf`.
     """
 
     brdf: Callable[..., Array]
@@ -77,7 +77,7 @@ def row(
 
 
 def diffuse_model(name: str) -> Model:
-    """The row with this name in any of the tables.
+    """The row with the given name in any of the tables.
 
     >>> diffuse_model("eon").parameter
     'roughness'

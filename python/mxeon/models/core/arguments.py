@@ -30,7 +30,7 @@ _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
 _WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float64
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
-# In these closed ranges, a value beyond an end by less than a rounding of float32 is clamped.
+# Closed ranges, to which values outside are clamped if the excess is below a rounding of float32.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 ROUNDING = 2.0**-23
 # Tolerance of the squared length of a direction. Directions rounded to float32 are accepted.
@@ -174,7 +174,7 @@ def with_axes(array: Numbers, ndim: int) -> Numbers:
 
 
 def checked(name: str, value: ArrayLike, quantity: str = "") -> Numbers:
-    """Argument as an array of real numbers, checked against the range of its quantity."""
+    """Argument as an array of real numbers in the range of `quantity`."""
 
     def in_range(array: Numbers) -> Numbers:
         low, high, interval = RANGES[quantity or name]
@@ -197,22 +197,22 @@ def checked_real(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_all(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """Arguments as arrays, each checked against the range of its name."""
+    """Arguments as arrays. Values must lie in the argument's range."""
     return {name: checked(name, value) for name, value in values.items()}
 
 
 def checked_vectors(values: Mapping[str, ArrayLike]) -> dict[str, Numbers]:
-    """Arguments as arrays with at least one axis, each checked against the range of its name."""
+    """Arguments as arrays with at least one axis. Values must lie in the argument's range."""
     return {name: with_axis(value) for name, value in checked_all(values).items()}
 
 
 def checked_numbers(**values: ArrayLike) -> list[Array]:
-    """Arguments as float64 arrays that broadcast, each checked against the range of its name."""
+    """Arguments as float64 arrays that broadcast. Values must lie in the argument's range."""
     return broadcastable({}, checked_all(values))
 
 
 def checked_color(name: str, value: ArrayLike) -> Numbers:
-    """Argument as a color of at least one channel, checked against the range of its name."""
+    """Argument as a color of at least one channel. Values must lie in the argument's range."""
     color = with_axis(checked(name, value))
     if not color.shape[-1]:
         raise ValueError(f"{name} must have at least one channel; got shape {tuple(color.shape)}")
@@ -220,7 +220,7 @@ def checked_color(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_rgb(name: str, value: ArrayLike) -> Numbers:
-    """Argument as an RGB color, checked against the range of its name. One channel is repeated."""
+    """Argument as an RGB color in the argument's range. A single channel is repeated."""
     color = checked_color(name, value)
     if color.shape[-1] not in (1, 3):
         raise ValueError(f"{name} must have 1 or 3 channels; got shape {tuple(color.shape)}")
@@ -298,7 +298,7 @@ def checked_triples(name: str, value: ArrayLike) -> Numbers:
 
 
 def checked_pairs(name: str, value: ArrayLike) -> Numbers:
-    """Argument of shape (..., 2), checked against the range of its name."""
+    """Argument of shape (..., 2). Values must lie in the argument's range."""
     return _with_components(name, checked(name, value), 2)
 
 

@@ -262,7 +262,7 @@ def arccosine(x: Array) -> Array:
 
 
 def angle(y: Array, x: Array) -> Array:
-    """Polar angle of (x, y). At the origin, value and derivatives are those of the point (1, 0)."""
+    """Polar angle of (x, y). At the origin, the result and the derivatives are as at (1, 0)."""
     xp = array_namespace(x, y)
     if xp is NUMPY:
         return xp.atan2(y, x)

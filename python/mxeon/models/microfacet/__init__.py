@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""BRDFs of the microfacet nodes of pbrlib, in 1/sr and without the cosine, and their albedos.
+"""BRDFs and albedos of pbrlib's microfacet nodes. BRDFs are in 1/sr and without the cosine.
 
 All functions broadcast and accept the ends of every range. A surface with alpha 0 is a mirror. The
 value of a mirror, a delta function, counts as 0, and the albedo of a mirror is F(mu_o). If both

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fresnel reflectances of pbrlib's microfacet nodes, their averages, and the node artistic_ior.
+"""Fresnel reflectances of pbrlib's microfacet nodes, averages of F, and the node artistic_ior.
 
 F_ss, the cosine-weighted average of F over the hemisphere, is twice the integral of F(mu) mu from
 mu = 0 to 1. Section names refer to [MaterialX2026].

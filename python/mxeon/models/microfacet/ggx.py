@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Distribution, masking, shadowing and roughness of GGX microfacets, and their albedo E_ss.
+"""Distribution, masking, shadowing, roughness and the albedo E_ss of GGX microfacets.
 
 E_ss is the albedo of facets that absorb nothing, without multiple scattering. Section names refer
 to the chapter Microfacet Model of [MaterialX2026]. Functions that validate no arguments expect the

@@ -125,7 +125,7 @@ class PbrNode(Node[Scattering]):
     - `taken`: The albedo E in the share 1 - E, if E is not `albedo` at `white` inputs.
     - `transmits`: Whether the node scatters light from below the horizon instead of from above.
     - `mirror`: Inputs for which the node reflects all light, or empty if there are no such inputs.
-    - `parameters`: Inputs of the mode, if the names or quantities differ from the category's.
+    - `parameters`: Inputs of the mode, if names or quantities differ from the category's inputs.
     - `average`: Average albedo, if a closed form is known.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""glTF 2.0's metallic-roughness material with its extensions KHR_materials_*.
+"""glTF 2.0's metallic-roughness material with the extensions KHR_materials_*.
 
     material = mix(dielectric, metal, metallic)
     dielectric = f_specular + (1 - E[f_specular]) mix(f_diffuse, baseColor f_btdf, transmission)

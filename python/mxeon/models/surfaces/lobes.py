@@ -50,7 +50,7 @@ class Frame:
     tangent: Array
 
     def local(self, wo: Array, directions: Array) -> Array:
-        """Directions (N, 3) in this frame, after the normal is flipped toward the viewer."""
+        """Directions (N, 3) in the shading frame, after the normal is flipped toward the viewer."""
         facing = np.where((wo * self.normal).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
         z = np.broadcast_to(facing * self.normal, wo.shape)
         x = self.tangent - (self.tangent * z).sum(axis=1, keepdims=True) * z

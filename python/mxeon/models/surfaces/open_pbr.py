@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenPBR Surface 1.1.1 as the linear combination of lobes in its section "Reduction to a mixture of lobes".
+"""OpenPBR Surface 1.1.1 by the equations of its section "Reduction to a mixture of lobes".
 
     f_surface        = F f_fuzz + lerp(1, 1 - E[white f_fuzz], F) f_coated-base
     f_coated-base    = C f_coat + lerp(1, T_coat (1 - E[f_coat]), C) Delta f_base

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Autodesk Standard Surface 1.0.1 by the formulas in its section "Closures".
+"""Autodesk Standard Surface 1.0.1 by the formulas in the section "Closures".
 
     coat_layer   = coat f_coat + lerp(1, coat_color (1 - E[f_coat]), coat) (emission + f_mixture)
     f_mixture    = metalness f_metal + (1 - metalness) f_reflection
