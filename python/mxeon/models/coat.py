@@ -28,8 +28,8 @@ shapes do not broadcast.
 For constant `alpha` and `ior`, the albedo and the energy compensation depend only on the viewer's
 cosine. Both are integrated at Chebyshev nodes and interpolated.
 
-**The varnish** is EON below a rough dielectric interface that also acts on light on its way out.
-The interface reflects f_r and transmits the fraction T = 1 - E_r of the light, which arrives at EON
+**The varnish** is EON below a rough dielectric interface that also acts on light from EON. The
+interface reflects f_r and transmits the fraction T = 1 - E_r of the light, which arrives at EON
 along refracted directions w'. Each time light returns from EON, the interface reflects the fraction
 R of this light back to EON. EON's first reflection uses the BRDF f_b. Every later reflection uses a
 mean of f_b. The sum of all reflections follows [Saunderson1942], for a base whose albedo depends on

@@ -205,9 +205,9 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
       mean free path, W is max(mu, 0).
 
     The mean of W over the sphere is 1/4, the mean of max(mu, 0). As in the specification, distances
-    are chords through the sphere. The profile is normalized over chords up to 2, the diameter.
-    Accuracy: the absolute error is below 1e-6. [MaterialX2026], section Normalized Diffusion
-    Profile; [Christensen2015].
+    are chords through the sphere. With C'(r) = 2 pi r R(r), the divisor C(2) normalizes the
+    profile over chords up to the diameter. Accuracy: the absolute error is below 1e-6.
+    [MaterialX2026], section Normalized Diffusion Profile; [Christensen2015].
 
         >>> diffusion_blur([-0.5, 0.0, 1.0], 0.1).round(4)
         array([0.0097, 0.074 , 0.9344])

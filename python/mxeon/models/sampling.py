@@ -256,7 +256,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     # `rest` is 1 - v[3], computed without cancellation.
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])
-    # Sample one cosine from each of lower, upper and multiple; keep the chosen part's cosine.
+    # Sample a cosine from each of lower, upper and multiple, and keep the chosen part's cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, arrays.power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(arrays.power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
@@ -279,7 +279,7 @@ def eon_integrals(
 
 
 def eon_cube_gap(mu: Array, S: Array) -> Array:
-    """Quotient (1 - S^3) / mu, computed without a division by mu or a cancellation."""
+    """Quotient (1 - S^3) / mu, computed without division by mu and without cancellation."""
     return mu * (1.0 + S + S * S) / (1.0 + S)
 
 
@@ -433,7 +433,7 @@ def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[A
 
 
 def _normalized(wo: Array, w: Array, pdf: Array) -> tuple[Array, Array]:
-    """Direction of w in the frame of wo, and the density pdf |w|^3."""
+    """Direction of w after a rotation to wo's azimuth, and the density pdf |w|^3."""
     length = root(array_namespace(w).sum(w * w, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
     return rotate_z(w / length[..., np.newaxis], cosine, sine), pdf * length**3

@@ -24,8 +24,8 @@ class Model(PbrNode):
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr, shape (..., C); Lambert has no parameter.
     - `albedo_dir`: `albedo_dir(mu, rho, *parameter)`, shape (..., C), if a closed form is known.
     - `albedo_avg`: `albedo_avg(rho, *parameter)`, shape (..., C), if a closed form is known.
-    - `brdf_of`: Name of the model from which `brdf` is taken; `name` if no other model has this
-      `brdf`.
+    - `brdf_of`: Name of the model from which `brdf` is taken; `name` if `brdf` is not taken from
+      another model.
     """
 
     brdf: Callable[..., Array]

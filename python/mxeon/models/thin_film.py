@@ -99,7 +99,7 @@ def refracted(mu: Array, film_ior: Array) -> Array:
 
 
 def path_difference(mu: Array, thickness: Array, film_ior: Array) -> Array:
-    """Optical path difference 2 thinfilm_ior cos(theta_t) thickness, in meters."""
+    """Optical path difference 2 film_ior cos(theta_t) thickness, in meters."""
     return 2.0 * film_ior * refracted(mu, film_ior) * thickness * METERS
 
 

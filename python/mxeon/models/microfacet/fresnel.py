@@ -151,7 +151,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
 
 def _is_smooth(n2: Array) -> Array:
     """Whether F(c) is smooth: no singularity of F lies near the interval [0, 1] of cosines c."""
-    # F(c) is singular at c^2 = 1 - n^2 and at c^2 = 1 / (1 + n^2), which may be infinite.
+    # F(c) is singular at sqrt(1 - n^2) and at -1 / sqrt(1 + n^2), which may be infinite.
     with np.errstate(divide="ignore", invalid="ignore"):
         points = np.stack([np.sqrt(1.0 - n2), -1.0 / np.sqrt(1.0 + n2)])
     far = np.abs(points) + np.abs(points - 1.0) > 0.5 * (ELLIPSE + 1.0 / ELLIPSE)

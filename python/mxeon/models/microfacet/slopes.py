@@ -21,10 +21,9 @@ from mxeon.models.core.arrays import Array, array_namespace, at_least_0, at_most
 from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
-# Each of PANELS panels of r has SLOPE_NODES Gauss-Legendre nodes, each quadrant of phi has
-# QUADRANT.
+# Quadratures have SLOPE_NODES nodes per panel of r, and QUADRANT nodes per quadrant of phi.
 SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
-# With a critical angle, a panel of r has SPLIT_NODES nodes, and an azimuth interval has SPLIT_PART.
+# If there is a critical angle: nodes per panel of r, and nodes per azimuth interval.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
 # Smallest cosine of wo and largest r. Facets with a larger r reflect less than 1e-12 of the light.
@@ -89,7 +88,7 @@ class Slopes:
         The cosine of the reflected direction, mu_i = 2 (wo . h) h_z / |h|^2 - mu_o
         = 2 (mu_o + B r) / (1 + g r^2) - mu_o, is at least 0 if mu_o g r^2 <= 2 B r + mu_o. So the
         largest r is (B + q) / (mu_o g) = mu_o / (q - B), where q = sqrt(B^2 + mu_o^2 g). The first
-        form has no cancellation for B >= 0, the second form has none for B < 0.
+        form does not cancel for B >= 0, and the second form does not cancel for B < 0.
         """
         (cos_0, sin_0), (alpha_x, alpha_y) = self.axis, self.roughness
         xp = array_namespace(omega)
