@@ -52,8 +52,8 @@ IDLE, OWN = {"verdict": NOT_RUN, "error": None}, caused("input", "", "a/roughnes
 BENT = stock(diagnosis=caused("not finite", region=ZERO))
 LAYER = stock(key="layering", diagnosis=quoted("X"))
 FIRST = f"0.37 (value)\ncause: gl with stock: {EON} "
-# Rows as failed results with stock MaterialX, fields of the picture's result, an expected text in
-# the summary, and the last line of the summary.
+# Each row has failed results with stock MaterialX, fields of the picture's result, an expected text
+# in the summary, and the last line of the summary.
 ANSWERS = (
     ((stock(),), {}, f"{RIGHT}.", NOTHING),
     ((BENT,), {}, f"{RIGHT} for inputs that this material does not use.", NOTHING),

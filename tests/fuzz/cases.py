@@ -161,7 +161,7 @@ def _inherited(count):
     return "".join(rows) + f'<i{count - 1} name="lobe" type="BSDF"/>'
 
 
-# Cases as title, nodes of the document, and command.
+# Each case has a title, the nodes of a document, and a command.
 ROWS = (
     ("a lobe in an input", f'<input name="i" type="float">{ROUGH}</input>', _generate("glsl")),
     ("a mix of one", f'<eon_diffuse_bsdf name="a" type="BSDF"/>{LEFT}', RENDER),
@@ -265,7 +265,7 @@ OTHERS = (
 
 
 def includes():
-    """Cases as implementation's file, form of include, included file, depth, target, function."""
+    """A case's implementation file, form of include, included file, depth, target, and function."""
     for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
         yield "own.glsl", *row, 'function="own" '
     for name, target in product(BROUGHT, FUNCTIONS):

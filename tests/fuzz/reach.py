@@ -207,7 +207,7 @@ def _context(before):
 
 
 def _marked(root, places):
-    """Text of a document with a mark in each attribute in `places`, and attributes by mark."""
+    """Text of a document with a mark in each attribute in `places`, and the attributes by mark."""
     root, marks, aliases = deepcopy(root), {}, {}
     elements = list(root.iter())
     for place in places:
@@ -226,7 +226,7 @@ def _marked(root, places):
 
 
 def _word(old, number, place):
-    """A marked value of the same kind as an old value, and the mark."""
+    """New value of the same kind as the old value, and the mark that the new value contains."""
     if old.strip().isdigit():
         return f"77{number:05}", f"77{number:05}"
     mark = f"mark{number:05}x"

@@ -29,11 +29,11 @@ from tools.site import arrays as table
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption", "scattering")
 TINTS += ("emission", "scattered", "behind")
 COLORS = {"color0", "color82", "color90", "ior", "extinction", *TINTS}
-# Parts of function names. These functions have a roughness with two components.
+# Parts of names of functions whose roughness has two components.
 PAIRS = ("microfacet", "ggx_", "btdf", "transmittance_dir")
 INTERFACES = "dielectric_over_eon", "varnished"
 ROWS, FEW = 48, 4
-# Ends of function names. These functions sum thousands of quadrature nodes per row.
+# Endings of names of functions that sum thousands of quadrature nodes per row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)

@@ -10,9 +10,9 @@ where N and D are polynomials in x = mu / (mu + alpha), in a root y of alpha, an
 identifies the Fresnel curve. The coefficients minimize the largest error of the albedo E_ss F(c).
 Among Schlick's curves (1 - c)^q, exponent 5 has twice the weight of other exponents.
 
-Hoffman's dip c (1 - c)^6 is not monotone, so the third fit is the average of the dip itself. If c
-is the cosine for Schlick's curve of exponent 5, the fitted average is c (1 - c)^6 + alpha^2 / (mu +
-alpha) N / D, where N and D are polynomials in mu and sqrt(alpha).
+Hoffman's dip c (1 - c)^6 is not monotone, so the average of the dip is fitted instead of a cosine.
+If c is the cosine for Schlick's curve of exponent 5, the average is c
+(1 - c)^6 + alpha^2 / (mu + alpha) N / D, where N and D are polynomials in mu and sqrt(alpha).
 
 The quadrature only uses sums, products, quotients and square roots, as in `ggx_albedo.py`.
 

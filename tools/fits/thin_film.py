@@ -110,7 +110,7 @@ def counted_orders(z, opd, spread, count):
     for k, v, mu, var in film.GAUSSIANS:
         height = v * np.sqrt(2.0 * np.pi * var) / film.NORMAL
         wave, fade = z * np.exp(2j * np.pi * mu * opd), np.exp(-decay(mu, var, opd, spread))
-        # Order m is wave^m fade^(m^2).
+        # The term of order m is height wave^m fade^(m^2).
         order, step = height * wave * fade, wave * fade**3
         for m in range(1, int(count.max()) + 1):
             total[k] += np.where(m <= count, order.real, 0.0)
@@ -213,7 +213,7 @@ def albedo_errors(category, material, alpha, mu):
 
 
 def seen_errors(category, material, alpha, mu):
-    """`albedo_errors` times the cosine of the view, the weight in pictures of a sphere."""
+    """`albedo_errors` times the cosine of the view."""
     return mu * albedo_errors(category, material, alpha, mu)
 
 

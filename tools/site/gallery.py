@@ -35,8 +35,8 @@ SIZE = 512  # width and height of a picture in pixels
 INSET, EDGE = 112, 8  # width of the inset, and distance from the edge, in pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # height of the studio's latitude-longitude map in pixels
-# Soft boxes, as azimuth relative to the viewer, elevation, half width and half height, all in
-# degrees, and RGB radiance.
+# A soft box has an azimuth relative to the viewer, an elevation, a half width and a half height in
+# degrees, and an RGB radiance.
 BOXES = (
     ((-48.0, 42.0), (22.0, 15.0), (7.0, 6.8, 6.4)),
     ((66.0, 22.0), (5.0, 34.0), (8.0, 8.3, 9.0)),

@@ -15,7 +15,7 @@ from tools.site.ledger import figure
 
 PAGE = DOCS / "results.md"
 HOST, LIBRARIES = "gl", ("stock", "eonlib")
-# Rows as check, subject, and a description of what stock MaterialX computes.
+# Each row has a check, a subject, and a description of what stock MaterialX computes.
 SUMMARY = (
     ("value", "sheen_bsdf, mode zeltner", "a singular frame where the viewer is along the normal"),
     ("transmitted", "dielectric_bsdf, scatter_mode RT", "a division by the masking G1"),

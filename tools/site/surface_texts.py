@@ -35,7 +35,7 @@ OPTIONS = [word for name in NAMES for word in ("--node", name)]
 TRANSPORT = (
     "how light travels inside the object is the renderer's; path tracers only get the medium"
 )
-# Statements without a check, as specification, section, statement and reason.
+# Statements without a check. Rows have specification, section, statement and reason.
 # fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),

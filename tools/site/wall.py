@@ -84,7 +84,7 @@ class Tile(NamedTuple):
     scene: str
     image: NDArray[np.floating]
     difference: Difference
-    cause: str  # HTML
+    cause: str  # a text in HTML
     verdict: str  # also the CSS class of the figure
 
     @property
@@ -241,7 +241,7 @@ class Wall:
         )
 
     def rough(self) -> str:
-        """Section about rough diffuse nodes, with equal pictures of a renderer only once."""
+        """Section about rough diffuse nodes, without repeated pictures of a renderer."""
         reference = pixels(self.references[PORTRAIT, EON, BACK.name])
         tiles: dict[tuple[str, float], Tile] = {}
         for each in self.images:

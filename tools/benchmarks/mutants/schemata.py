@@ -308,7 +308,7 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Each subject's title, whether the spec is in COMPOSED, shader text, and checks."""
+    """Yield title, whether the spec is in COMPOSED, shader text, and checks of each subject."""
     every = Functions(host)
     yield "functions", False, every.text, every
     # Films come before transmission, which runs the same code without a film.

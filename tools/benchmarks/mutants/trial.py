@@ -50,7 +50,7 @@ FOLDER_TESTS = {
         "test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo",
     ),
 }
-LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups, but includes none
+LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups without an #include
 NOISY = ("environment", "furnace")  # slowest checks on Cycles
 # The gl host cannot detect mutants in the following files, which no shader for gl contains.
 ON_CYCLES = ("genosl/",)

@@ -38,7 +38,7 @@ def write_measured(found: dict[str, Any]) -> None:
 
 
 def dumped(found: Any, depth: int) -> str:
-    """JSON text with one line for each entry, down to the nesting depth `depth`."""
+    """JSON text in which entries of the outer `depth` levels have separate lines."""
     if depth == 0 or not isinstance(found, dict):
         return json.dumps(found)
     lines = (f"{json.dumps(name)}: {dumped(each, depth - 1)}" for name, each in found.items())

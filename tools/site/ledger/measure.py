@@ -69,7 +69,7 @@ def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any
     nearest = [title for _, title in ranking if title != diagnosis.first.key]
     if diagnosis.kind is Kind.MODEL and nearest:
         measures["next"] = nearest[0]
-    return dict(json.loads(json.dumps(measures)))  # tuples become lists, as after reading a file
+    return dict(json.loads(json.dumps(measures)))  # converts tuples to lists
 
 
 def fields(cause: Cause) -> dict[str, Any]:

@@ -128,8 +128,7 @@ def _june(pair: Pair) -> Array:
 UNCOMPENSATED = "no energy compensation"
 AND_FIT, AVERAGE_BY_ENDS = "and MaterialX's fit of E_ss", "the average F0 + (F90 - F0) / 21"
 MEAN_ALPHA = "Smith at the geometric mean"
-# Wrong compensations, as name, title, function that replaces F_ss, and function for
-# (1 - E_ss) / E_ss.
+# Wrong compensations. Rows have a name, a title, and functions for F_ss and for (1 - E_ss) / E_ss.
 COMPENSATIONS = (
     ("half", "F at the half vector", _F_half, microfacet.missing),
     ("f0", "F along the normal", _F_normal, microfacet.missing),
