@@ -109,14 +109,14 @@ def test_no_output_is_a_file_that_is_read(command, kind, inputs, capsys):
     for link in (os.symlink, os.link):
         link(inputs / FILES[kind], output)
         line = refused([*command.split(), str(named)], inputs, capsys)
-        assert "output must not replace a file that is read" in line and FILES[kind] in line
+        assert "output must not replace an input file" in line and FILES[kind] in line
         output.unlink()
 
 
 @pytest.mark.parametrize("spelling", ["tiles.png", "lib/../tiles.png", "./tiles.png"])
 def test_an_output_of_the_name_of_an_input_is_refused(spelling, inputs, capsys):
     line = refused([*next(iter(WRITING)).split(), spelling], inputs, capsys)
-    assert "output must not replace a file that is read" in line
+    assert "output must not replace an input file" in line
 
 
 @pytest.mark.parametrize(
@@ -133,7 +133,7 @@ def test_a_report_goes_to_no_folder_that_holds_what_is_read(folder, command, inp
     (inputs / "there").symlink_to(inputs / folder)
     for name in (folder, "there"):
         line = refused([*command.split(), name], inputs, capsys)
-        assert "must be a folder without files that are read" in line
+        assert "must be a folder without input files" in line
 
 
 LOOK = f"{FILES['document']} --workers 0"

@@ -291,7 +291,7 @@ def test_a_graph_of_two_versions_of_a_node_is_reported_once(judged, tmp_path):
     library = wrong_stock(tmp_path, f"{BXDF}/standard_surface.mtlx", (old, new))
     result = judged("release", EVERY_NODE, library=library)
     assert [each.names[0] for each in result.diagnosis.causes] == ["standard_surface"]
-    assert "1 more with this text" in said(result)
+    assert "1 more with the same source" in said(result)
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):

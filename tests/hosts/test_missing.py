@@ -29,7 +29,7 @@ ENVIRONMENTS = [  # Host, environment variables that hide the engine, and words 
     ("babylon", {browser.MODULES: "/nowhere"}, f"no package @babylonjs/core in /nowhere; {NPM}"),
     ("three-gpu-pathtracer", {browser.MODULES: "/nowhere"}, f"no package .* in /nowhere; {NPM}"),
     ("webgl", {"MXEON_CHROMIUM": "none"}, "no program 'none'; .* apt-get install chromium"),
-    ("webgl", {"MXEON_CHROMIUM": "true"}, "the browser fails; "),
+    ("webgl", {"MXEON_CHROMIUM": "true"}, "the browser failed; "),
     ("materialx", {"DISPLAY": "", "PATH": ""}, DISPLAY),
 ]
 MODULES = [  # Host, attribute that refers to a Python package, and words of the message.

@@ -115,7 +115,7 @@ def test_a_run_lists_the_files_of_folder_and_package_and_the_lobes_without_a_mod
 def elsewhere(folder):
     copy_of_stock(folder, SHEEN)
     (folder / GLSL).rename(folder / "gl")
-    return f"gl/mx_sheen_bsdf.glsl must lie at {SHEEN}, as MaterialX's file of that name"
+    return f"gl/mx_sheen_bsdf.glsl must lie at {SHEEN} to replace MaterialX's file of that name"
 
 
 def package(folder):
@@ -139,7 +139,7 @@ def holding(*names):
     def make(folder):
         for name in names:
             (folder / name).write_text("")
-        return "none of its files is one" if names else "it is empty"
+        return "it has no such file" if names else "it is empty"
 
     return make
 

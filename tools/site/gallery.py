@@ -50,12 +50,12 @@ TITANIUM = DOCS / "images" / "titanium.mtlx"  # material of the README's picture
 HEAD = """<!-- Made by `python -m tools.site.gallery`. -->
 # Gallery
 
-The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX beside eonlib, the
+The materials in `examples/` on a shader ball in a studio, rendered on the `gl` host: stock MaterialX and eonlib, the
 largest difference first. The inset shows the pictures' difference, from black to the share in its label. Furnace documents
-show a sphere in a white environment, where it vanishes if no energy is lost or gained. The ball reflects itself in the
-[path-traced pictures](#path-traced) alone.
+show a sphere in a white environment, where it vanishes if no energy is lost or gained. The ball reflects itself only in
+the [path-traced pictures](#path-traced).
 
-Below each pair stands what `mxeon check` says of stock: its largest difference from the reference, in percent of white or
+Below each pair is what `mxeon check` reports for stock: the largest difference from the reference, in percent of white or
 of the reference where that is brighter (*+*: too bright), and the share of the sphere on which it is visible; in light from
 behind, unless another light is named. To draw a picture yourself:
 

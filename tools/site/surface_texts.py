@@ -32,9 +32,7 @@ HEAD = "| section | the text | verdict: what is there instead; largest error |\n
 NAMES = tuple(name for name, _ in groupby(SENTENCES, lambda spec: spec.node))
 OPTIONS = [word for name in NAMES for word in ("--node", name)]
 
-TRANSPORT = (
-    "how light travels inside the object is the renderer's; path tracers only get the medium"
-)
+TRANSPORT = "the renderer computes light inside the object; path tracers only receive the medium"
 # Statements without a check. Rows have specification, section, statement and reason.
 # fmt: off
 NOT_JUDGED = (
@@ -42,13 +40,13 @@ NOT_JUDGED = (
     (OPENPBR, "Translucent base", "extinction and scattering from color, depth and scatter", TRANSPORT),
     (OPENPBR, "Translucent base", "dispersion by an Abbe number", "no node of the graph reads the inputs"),
     (OPENPBR, "Opacity", "geometry_opacity blends with what is behind", "the check `alpha` of `surface` judges it"),
-    (OPENPBR, "Emission", "nits", "the conversion is the renderer's"),
-    (OPENPBR, "Thin-walled mode", "the ladder of reflections in a sheet of glass", "environment lookups have one direction of transmission"),
+    (OPENPBR, "Emission", "nits", "the renderer converts them"),
+    (OPENPBR, "Thin-walled mode", "multiple reflections in a sheet of glass", "environment lookups have one direction of transmission"),
     (STANDARD, "Transparency", "opacity by color", "the check `alpha` of `surface` judges its luminance"),
     (STANDARD, "Specular transmission", "depth, scatter, dispersion", "no node of the graph reads the inputs"),
     (STANDARD, "Specular transmission", "an index of 1 and no film on thin walls", "environment lookups do not show the index"),
-    (STANDARD, "Subsurface scattering", "radius and anisotropy", "the text stipulates no model"),
-    (GLTF, "3.9", "occlusion, normal and alpha modes", "textures and coverage are the client's; no node reads `occlusion`"),
+    (STANDARD, "Subsurface scattering", "radius and anisotropy", "the text defines no model"),
+    (GLTF, "3.9", "occlusion, normal and alpha modes", "clients apply textures and coverage; no node reads `occlusion`"),
     (GLTF, "KHR_materials_volume", "thickness and attenuation", "no connected node of the graph reads the inputs"),
     (GLTF, "KHR_materials_dispersion", "dispersion", "no node of the graph reads the input"),
     (USD, "Preview Surface", "displacement, occlusion", "no node of the graph reads the inputs"),

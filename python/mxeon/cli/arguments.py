@@ -152,7 +152,7 @@ SHARED: Mapping[str, Mapping[str, Any]] = {
         "type": float,
         "default": TIMEOUT,
         "metavar": "SECONDS",
-        "help": "stop a worker that takes longer than this for one item (default: %(default)g)",
+        "help": "stop a worker that takes longer than SECONDS for one item (default: %(default)g)",
     },
     "--definitions": {
         "action": "append",
@@ -260,8 +260,8 @@ def add_methods(command: argparse.ArgumentParser) -> None:
     words = "iterations in MaterialX's own thin-film code"
     group.add_argument(OPTIONS["airy"], type=int, default=0, metavar="N", help=words, dest="airy")
     for name, words in (
-        ("premultiplied", "whether mix multiplies its lobes' weights by its own"),
-        ("distributed", "whether layer is distributed over mix"),
+        ("premultiplied", "whether mix multiplies its lobes' weights by its own weight weight"),
+        ("distributed", "whether to distribute layer over mix"),
         ("searched", "whether to search the library's genglsl/environment first"),
     ):
         action = argparse.BooleanOptionalAction

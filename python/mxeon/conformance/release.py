@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compare definitions, units, graphs and texts of a library with the installed MaterialX release.
+"""Compare definitions, units, graphs and sources of a library with the installed MaterialX release.
 
 Other checks judge nodes with a model. For everything else, the release is the reference. If the
 text or graph of a node differs from the release, the node must have the values of the release.
@@ -38,7 +38,7 @@ from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.released_graphs import differences, hidden, port_text, ports_of
 from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
-RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
+RELEASE, SUBJECT = "release", "definitions, units, graphs and sources"
 CLAIM = "Parts without a model are as MaterialX released them, or have the same values."
 SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes

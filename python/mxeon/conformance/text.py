@@ -37,7 +37,7 @@ Inputs = Mapping[str, expressions.Array]
 # fmt: off
 CLAIMS = {
     "languages": ("The shader functions are identical in OSL and GLSL, apart from type names.",
-                  Quantity.FUNCTIONS, "the first number of the OSL text is different"),
+                  Quantity.FUNCTIONS, "the first number of the OSL source is different"),
     "source": ("The generated source passes every input of the node to the function it calls.",
                Quantity.INPUTS, "each input in turn is 0"),
     "clash": ("No two nodes define the same name, so a shader can use both.",

@@ -419,7 +419,7 @@ def _release(cause: Cause) -> str:
     if rows and cause.values and math.isfinite(cause.values[0]):
         text += f", with an error up to {in_words(cause.values[0])}"
     if cause.of and cause.of > 1:
-        text += f", and {cause.of - 1} more with this text"
+        text += f", and {cause.of - 1} more with the same source"
     return text
 
 

@@ -25,7 +25,7 @@ CONSTANTS = 64  # cached textures of one value, because most inputs are constant
 POINTS = 4  # cached textures of points; most materials share a texture
 REMEDIES = {
     "linux": "on Debian: apt-get install libegl1 libgl1-mesa-dri",
-    "darwin": "macOS ends at OpenGL 4.1: use --host wgsl or --host webgl",
+    "darwin": "macOS supports only OpenGL 4.1: use --host wgsl or --host webgl",
     "win32": "install the driver of a GPU, or use --host wgsl or --host webgl",
 }
 

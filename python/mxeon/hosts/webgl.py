@@ -127,7 +127,7 @@ class Chromium:
             return answer | {"browser": self._page.context.browser.version}
         except sync_api.Error as error:
             self._stop()
-            return {"failed": f"the browser fails; {error.message.splitlines()[0]}"}
+            return {"failed": f"the browser failed; {error.message.splitlines()[0]}"}
 
     def _stop(self) -> None:
         self._page = None

@@ -92,10 +92,10 @@ def check_output(
     parent = cache(_identity)
     for file in inputs if existing or folder else ():
         if _identity(file) in existing:
-            raise InputError(f"output must not replace a file that is read; {output} is {file}")
+            raise InputError(f"output must not replace an input file; {output} is {file}")
         paths = (Path(os.path.abspath(file)), Path(os.path.realpath(file)))
         if folder and any(folder == parent(each) for path in paths for each in path.parents):
-            rule = "must be a folder without files that are read"
+            rule = "must be a folder without input files"
             raise InputError(f"{output}: {rule}; it holds {file}: name another folder")
 
 

@@ -219,7 +219,7 @@ def _row(pictures: Sequence[Picture], tolerance: float) -> dict[str, Any]:
     if reference is not None:
         pixels = srgb_encoded(np.asarray(reference))
         judged = any(each.judged is not None for each in pictures)
-        note = f"NumPy, float64{', at the pixels to compare' if judged else ''}"
+        note = f"NumPy, float64{', at the compared pixels' if judged else ''}"
         figures.append(_figure("reference", "Reference", note, pixels))
     largest = [abs(one.difference.largest) for one, _ in differences if one.difference]
     scale = max([LEAST_SCALE, tolerance, *(difference_scale(values) for _, values in differences)])

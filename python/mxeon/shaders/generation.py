@@ -272,7 +272,7 @@ def _table_text(
     defect, reason, page = UNTABLED.get(target, (None, "", ""))
     if defect and defect in text:
         raise NotRun(
-            f"albedo table: MaterialX's text for {target} {reason}; see docs/upstream/{page}.md"
+            f"albedo table: MaterialX's shader for {target} {reason}; see docs/upstream/{page}.md"
         )
     return str(text)
 

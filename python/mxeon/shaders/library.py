@@ -235,7 +235,7 @@ def _documents(folder: AnyPath, rule: str) -> list[Path]:
     documents = sorted(Path(folder).rglob("*.mtlx")) if str(folder) else []
     if not documents:
         empty = not any(names for *_, names in os.walk(folder))
-        raise InputError(f"{rule}; {'it is empty' if empty else 'none of its files is one'}")
+        raise InputError(f"{rule}; {'it is empty' if empty else 'it has no such file'}")
     return documents
 
 

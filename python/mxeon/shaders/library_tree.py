@@ -84,8 +84,8 @@ def _tree(folder: str) -> Tree:
             other = known.get(PurePosixPath(each).name)
             if other and each not in installed and not each.endswith(f"/libraries/{other}"):
                 raise InputError(
-                    f"library {folder}: {each} must lie at {other}, as MaterialX's file of that name, to "
-                    "replace it; or rename it"
+                    f"library {folder}: {each} must lie at {other} to replace MaterialX's file of that "
+                    "name; otherwise rename it"
                 )
         if installed.keys().isdisjoint(recognized):
             return Tree(folder, OVERLAY, recognized, (), {})

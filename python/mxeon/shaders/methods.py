@@ -116,6 +116,6 @@ def assert_generated(text: str, methods: Methods) -> None:
             raise NotRun(f"{name}: MaterialX's generator wrote {value} instead of {methods}")
     if two_sided and len(re.findall(rf"\b{two_sided[1]}\b", text)) == 1:
         raise NotRun(
-            "environment none with transmission refraction: MaterialX's text reads "
-            f"{two_sided[1]}, which it does not declare"
+            "environment none with transmission refraction: MaterialX's shader reads "
+            f"{two_sided[1]} without declaring it"
         )

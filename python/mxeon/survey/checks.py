@@ -21,7 +21,7 @@ from mxeon.survey.specs import RendererSpec
 CHI_SQUARE = single(5.0, Quantity.DEVIATIONS, "five standard deviations")
 # The density contains the fourth power of a vector's length, which costs three bits of precision.
 OWN_DENSITY = sum_of(
-    roundings(48 * 2.0**3, "of a density, three bits of it lost"), quantity=Quantity.DENSITY
+    roundings(48 * 2.0**3, "(48, times 8 for three lost bits)"), quantity=Quantity.DENSITY
 )
 COSINES = (0.05, 0.3, 0.7, 0.99)  # cosines of view directions
 SAMPLES = 1 << 15

@@ -796,7 +796,7 @@ ROWS = (
          claim="The albedo averages the film's reflectance over the visible, lit facets.",
          measure=partial(visible, microfacets.STEEP), explain=diagnose_visible, methods=with_directions),
     FILM(key="film_brushed",
-         claim="In an environment, an anisotropic lobe under a film reflects the film's reflectance times what a mirror reflects.",
+         claim="In an environment, an anisotropic lobe under a film reflects the film's reflectance times a mirror's light.",
          measure=film_brushed, tolerance="anisotropic_throughput", explain=UNEXPLAINED,
          requires=Ability.PAIRS | Ability.LIGHT, open=False, methods=with_directions),
     FILM(key="film_glossy",

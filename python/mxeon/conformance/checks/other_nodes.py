@@ -74,7 +74,7 @@ ROWS = (
     Check(key="back", claim="The back of the surface emits the radiance of the node's equation.",
           applies=EMISSIONS, measure=BACK, control=controls.offset, requires=Ability.PAIRS, open=True),
     Check(key="transmittance",
-          claim="Over one meter, a medium transmits what its coefficients give.",
+          claim="Over one meter, a medium transmits as its coefficients require.",
           applies=MEDIA, measure=TRANSMITTANCE, control=controls.shifted),
     Check(key="above",
           claim="A medium does not absorb light that is reflected above it.",

@@ -230,7 +230,7 @@ ROWS = (
           control=controls.scale("every value is 50 % too high", 1.5), explain=SUM,
           requires=Ability.LIGHT, methods=finds_albedo),
     Check(key="glass",
-          claim="In a white environment, clear glass reflects and transmits what its lobes do by the layer equation.",
+          claim="In a white environment, clear glass reflects and transmits as its lobes do by the layer equation.",
           applies=SURFACES, measure=glass, control=controls.scale("values are 5 % too large", 1.05),
           explain=SUM, requires=Ability.LIGHT),
     Check(key="reach",

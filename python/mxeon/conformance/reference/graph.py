@@ -295,7 +295,7 @@ class Graph(Nodes):
     def _image(self, node: mx.Node) -> Array:
         """Values of an image node at the points' own texture coordinates."""
         if self._points.texcoord is None or node.getInput("texcoord") is not None:
-            raise NotRun("reference: images are read at the sphere's own coordinates only")
+            raise NotRun("reference: images are supported only at the sphere's own coordinates")
         file = node.getInput("file")
         if not file or not file.getValueString():
             raise NotRun("reference: an image must have its own file name")

@@ -234,7 +234,7 @@ class ShadingPoints:
         known = {"Nworld": self.normal, "Tworld": self.tangent, "UV0": self.texcoord}
         known["Bworld"] = np.cross(self.normal, self.tangent)
         if (value := known.get(name)) is None:
-            raise NotRun(f"reference: the surface has no {name} here")
+            raise NotRun(f"reference: this surface has no {name}")
         return value
 
     @cached_property

@@ -26,7 +26,7 @@ from mxeon.shaders.methods import Methods
 
 CLAIMS = {
     HOST: "The host runs on this machine.",
-    results.SOURCE: "The generated text was checked.",
+    results.SOURCE: "The generated source was checked.",
     DOCUMENT: pictures.DOCUMENT_CLAIM,
     FUNCTIONS: "The shader functions match NumPy's.",
     release.RELEASE: release.CLAIM,
@@ -106,7 +106,7 @@ class Judge:
         if task.check == HOST:
             whole = task.subject == plan.EVERY_NODE
             place = "" if whole else f": {task.subject} with {task.library}"
-            raise NotRun(f"{task.host}: this host judges nothing that was requested{place}")
+            raise NotRun(f"{task.host}: none of the requested checks applies to this host{place}")
         return replace(self._on_host(task, host), hosts=(host.identity(),))
 
     def _on_host(self, task: Task, host: base.Engine) -> Findings:

@@ -361,8 +361,8 @@ def _untabled(hosts: Iterable[str]) -> Iterator[tuple[str, str]]:
     for host in hosts:
         if host_row(host).target in UNTABLED:
             _, reason, page = UNTABLED[host_row(host).target]
-            text = f"MaterialX's text {reason}; see docs/upstream/{page}.md"
-            yield f"tables of albedos on {host}", text
+            text = f"MaterialX's shader {reason}; see docs/upstream/{page}.md"
+            yield f"albedo tables on {host}", text
 
 
 def unjudged(library: str) -> tuple[tuple[str, str], ...]:

@@ -99,7 +99,7 @@ def warn_of_names(elements: Iterable[mx.Element], document: mx.Document) -> None
     if not any(each.isA(mx.NodeGraph) for each in document.getChildren()):
         return  # names are unique within a graph
     pairs = dict.fromkeys(pair for element in elements for pair in same_names(element))
-    rule = "must have different names; MaterialX gives both the values of one"
+    rule = "must have different names; MaterialX gives both nodes the same values"
     warn(DocumentWarning, [f"{label(document)}: nodes {pair} {rule}" for pair in pairs])
 
 
