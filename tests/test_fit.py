@@ -102,7 +102,6 @@ def test_a_parameter_that_the_data_do_not_determine_has_no_number(data, numbers)
 
 
 def merl_file(path, value, cells=MERL_CELLS):
-    """Write a MERL file with the values of a function of wo and wi."""
     grid = np.meshgrid(*((np.arange(n) + 0.5) / n for n in MERL_CELLS), indexing="ij")
     h, d, phi = (each.ravel() for each in grid)
     wo, wi = merl_directions(0.5 * np.pi * h**2, 0.5 * np.pi * d, np.pi * phi)

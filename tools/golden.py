@@ -48,7 +48,6 @@ def line(result: Line) -> Line:
 
 
 def rounded(value: object) -> object:
-    """A JSON value with non-integer numbers rounded to two digits."""
     if isinstance(value, dict):
         return {name: rounded(each) for name, each in value.items()}
     if isinstance(value, list):

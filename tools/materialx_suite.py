@@ -138,7 +138,6 @@ def set_options(suite: mx.Document, options: dict[str, str]) -> None:
 
 
 def run_tests(folder: Path, suite: mx.Document, case: str) -> None:
-    """Run C++ tests, unless the folder already has the results."""
     name = slug(case)
     if (folder / f"{name}.xml").exists():
         return

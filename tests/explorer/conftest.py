@@ -10,7 +10,6 @@ from tests.support.availability import available
 
 @pytest.fixture(scope="package")
 def browser():
-    """Chromium with its built-in software rendering."""
     with available("webgl"), launched() as browser:
         yield browser
 

@@ -132,7 +132,6 @@ def test_paths_have_samplers_and_count_their_samples(page):
 
 
 def in_sight(page):
-    """Scroll the picture into view, and return its bounding box."""
     canvas = page.locator("canvas")
     canvas.scroll_into_view_if_needed()
     return canvas.bounding_box()

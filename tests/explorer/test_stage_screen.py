@@ -31,7 +31,6 @@ def stage(browser, address):
 
 
 def screen(stage, tmp_path):
-    """Screenshot of the canvas, with 8 bits per channel."""
     file = tmp_path / "screen.png"
     stage.locator("canvas").screenshot(path=file)
     return oiio.ImageBuf(str(file)).get_pixels(oiio.UINT8)[..., :3].astype(int)

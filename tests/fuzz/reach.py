@@ -134,7 +134,6 @@ def _written(root, place):
 
 
 def _escaped(text):
-    """Text escaped for an XML attribute."""
     line = ElementTree.tostring(ElementTree.Element("x", a=text), encoding="unicode")
     return line.removeprefix('<x a="').removesuffix('" />')
 
@@ -182,7 +181,6 @@ def _search(root, places, targets, found):
 
 
 def _sources(document, target):
-    """Texts of all shader stages of a document; warnings are ignored."""
     with warnings.catch_warnings(action="ignore"):
         shaders = generate(document, target)
     return [source for each in shaders for source in each.stages.values()]

@@ -41,7 +41,6 @@ LOBES = (("eon", OREN_NAYAR, {FLAG: True}), ("qon", OREN_NAYAR, {FLAG: False}), 
 
 
 def drawn(count=COUNT):
-    """Random direction pairs, colors and roughnesses, rounded to float32."""
     wo, wi, rho, roughness = (each.astype("f4") for each in pairs(count, 1))
     return wo, wi, {"color": rho, "roughness": roughness}
 

@@ -66,7 +66,6 @@ def allowed(name, value):
 
 
 def surface(mi, wo):
-    """Mitsuba's surface interaction, viewed from the directions `wo`."""
     point = mi.SurfaceInteraction3f()
     point.wi = mi.Vector3f(np.asarray(wo).T)
     return point
@@ -90,7 +89,6 @@ def chi_square(mi, angle, functions):
 
 
 def furnace(mi, bsdf, samples):
-    """Render a sphere in a white environment with Mitsuba."""
     camera = mi.ScalarTransform4f().look_at([0, 0, 5], [0, 0, 0], [0, 1, 0])
     film = {"type": "hdrfilm", "width": 32, "height": 32, "rfilter": {"type": "box"}}
     scene = {

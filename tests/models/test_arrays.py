@@ -235,7 +235,6 @@ def sampled(function):
 
 
 def whole(value):
-    """Stack a tuple of results, such as a sampler's direction and density."""
     if not isinstance(value, tuple):
         return value
     w, pdf, *others = value

@@ -24,7 +24,6 @@ VIEWS[:, 2] = np.sqrt(1.0 - (VIEWS[:, :2] ** 2).sum(axis=1))
 
 
 def inclined(theta):
-    """Sine and cosine of the inclination `theta`."""
     return np.sin(theta), np.cos(theta)
 
 

@@ -38,7 +38,6 @@ def test_the_phase_function_integrates_to_1_and_has_the_mean_cosine_g(g):
 
 
 def phase(cosine, g):
-    """Phase function at the given cosine of the deflection angle."""
     x = np.sqrt(1.0 - np.square(cosine))
     return media.hg_pdf([0.0, 0.0, 1.0], np.stack([x, 0.0 * x, -np.asarray(cosine)], axis=-1), g)
 

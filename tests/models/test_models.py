@@ -22,7 +22,6 @@ ALL = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 
 def digits(numbers):
-    """Convert numbers to mpmath numbers with 50 digits."""
     return [mp.mpf(float(number)) for number in numbers]
 
 

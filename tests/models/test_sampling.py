@@ -73,12 +73,10 @@ def test_the_four_parts_of_eon_sum_to_one(mu, roughness):
 
 
 def assert_same_density(pdf, again):
-    """Assert that two densities are equal up to rounding."""
     np.testing.assert_allclose(pdf, again, rtol=tolerances.SAMPLE_PDF, atol=tolerances.DIRECTION)
 
 
 def turned(w, angle):
-    """Direction `w` after a rotation by `angle` about the normal."""
     x, y, z = np.moveaxis(w, -1, 0)
     c, s = np.cos(angle), np.sin(angle)
     return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)

@@ -42,7 +42,6 @@ def made_run(
 
 
 def kept(run, folder):
-    """Write the results of a run to a folder, and return the folder's path."""
     Path(folder).mkdir(exist_ok=True)
     Path(folder, "results.json").write_text(to_json(run))
     return str(folder)
@@ -54,7 +53,6 @@ def read(run):
 
 
 def diff(folder, before, after, *options):
-    """Exit status of `report diff` for two runs."""
     return main(["report", "diff", kept(before, folder / "a"), kept(after, folder / "b"), *options])
 
 

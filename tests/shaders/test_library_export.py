@@ -18,12 +18,10 @@ from tests.support.wheels import run_with
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """Folder of an exported copy of eonlib."""
     return export_library(tmp_path_factory.mktemp("export") / "copy")
 
 
 def contents(folder):
-    """Contents of all files below a folder, by relative path."""
     files = filter(Path.is_file, Path(folder).rglob("*"))
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 

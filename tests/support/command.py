@@ -23,7 +23,6 @@ def run(*arguments, **environment):
 
 
 def output(*command, **options):
-    """Run a program, assert that the program succeeds, and return its output."""
     command = [*map(str, command)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
     assert done.returncode == 0, done.stdout + done.stderr

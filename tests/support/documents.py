@@ -48,7 +48,6 @@ def connected(name="lobe", **inputs):
 
 
 def written(folder, text):
-    """Write a document to a folder and return its path."""
     path = folder / "look.mtlx"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return path
@@ -71,7 +70,6 @@ def refusal(source, policy=DEFAULT):
 
 
 def image(file, name="image"):
-    """Text of an image node that reads the given file."""
     return f'<image name="{name}" type="color3"><input name="file" type="filename" value="{file}"/></image>'
 
 

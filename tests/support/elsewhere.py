@@ -56,7 +56,6 @@ class Windows(ModuleType):
 
 
 def hide() -> None:
-    """Remove the modules, functions and signals that Windows lacks."""
     warnings.filterwarnings("error", category=EncodingWarning, module="mxeon")
     sys.modules.update(dict.fromkeys(MODULES))  # importing these modules raises ImportError
     for name in FUNCTIONS:

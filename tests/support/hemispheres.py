@@ -54,7 +54,6 @@ def sphere(nodes):
 
 
 def uniforms(count, seed):
-    """Pairs of random numbers in [0, 1), shape (count, 2)."""
     return np.random.default_rng(seed).random((count, 2))
 
 

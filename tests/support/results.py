@@ -43,7 +43,6 @@ def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", 
 
 
 def made_run(*results, documents=("a/clay.mtlx",), **fields):
-    """Invented run with the given results and documents."""
     contents = dict.fromkeys(documents, (EON,))
     software, hosts = {"MaterialX": "1.39.5"}, (Identity("gl", "4.5", "cpu"),)
     return Run("1", software, hosts, results, contents=contents, **fields)

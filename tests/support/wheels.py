@@ -72,7 +72,6 @@ def git(folder, *arguments):
 
 
 def install(version, folder):
-    """Install a version of MaterialX without its dependencies into a new folder."""
     command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", folder]
     command += ["--timeout", "30", f"materialx=={version}"]
     subprocess.run(command, check=True, capture_output=True, timeout=300.0)  # a download of 25 MB

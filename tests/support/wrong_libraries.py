@@ -12,7 +12,6 @@ STOCK, GLSL = standard_folders()[0], "pbrlib/genglsl"
 
 
 def copy_of_eonlib(folder):
-    """Copy eonlib to a folder, and return the folder of eonlib's documents."""
     for name in ("libraries", "genglsl", "genosl"):
         shutil.copytree(data_folder() / name, folder / name)
     return folder / "libraries"

@@ -92,7 +92,6 @@ class Frame:
         self._mesh = context.vertex_array(program, buffers, context.buffer(indices))
 
     def resize(self, size):
-        """Set the width and height of the picture."""
         picture = self._context.renderbuffer((size, size), 4, dtype="f4")
         self._target = self._context.framebuffer([picture])
 

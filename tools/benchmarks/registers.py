@@ -43,7 +43,6 @@ ATTRIBUTE = re.compile(r"^layout \(location = \d+\) in", re.MULTILINE)
 
 
 def sources(node):
-    """A material's shader stages in Vulkan GLSL, by library."""
     text = document_text(NODES[node])
     return {
         library: generate(text, "vulkan", library=library, lights=True)[0].stages

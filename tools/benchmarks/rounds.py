@@ -60,7 +60,6 @@ def clock_of(device):
 
 
 def table(group):
-    """Markdown table of a group's figures and checks."""
     lines = [f"## {group.title}", "", "| | median | quartiles | goal | |", "|---|---|---|---|---|"]
     for name, unit, values, goal in group.figures:
         low, median, high = np.quantile(values, (0.25, 0.5, 0.75))

@@ -100,7 +100,6 @@ def conductor_fit():
 
 
 def shipped_conductor():
-    """Weights and cosines that the shader uses."""
     text = source_file("glsl", "fresnel_conductor").read_text(encoding="utf-8")
     pairs = re.findall(r"- ([\d.]+) \* \(1\.0 - mx_fresnel_conductor\(([\d.]+),", text)
     return np.array(pairs, float).T

@@ -147,7 +147,6 @@ def fit(mu, alpha, ior, sampled, exact):
 
 
 def shipped():
-    """The shader's coefficients."""
     text = source_file("glsl", "fresnel_dielectric").read_text(encoding="utf-8")
     lines = re.search(r"vec2 a = .*?risen =[^;]*", text, re.DOTALL)
     assert lines

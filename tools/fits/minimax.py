@@ -148,7 +148,6 @@ def defines(form, coefficients, prefix):
 
 
 def shipped(stem, function):
-    """Coefficients that a GLSL function uses, beginning with N."""
     text = source_file("glsl", stem).read_text(encoding="utf-8")
     body = text.partition(f"{function}(")[2].partition("\n}")[0]
     parts = re.findall(r"float ([ND])\d? = (.*?);", body, re.DOTALL)

@@ -146,7 +146,6 @@ def orders_errors(category, material, alpha, mu):
 
 
 def curve_errors(category, material, _, mu):
-    """Absolute errors of the sum of orders."""
     exact = film_curve(category).at(mu, **material)
     return np.abs(shader_curve(category, material, mu) - exact).max(axis=0)
 

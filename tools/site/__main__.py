@@ -12,7 +12,6 @@ from tools.site import arrays, gallery, note, research, twins, versions
 
 
 def made() -> dict[Path, str]:
-    """Texts of the generated files, by path."""
     tables = {each.PAGE: each.page for each in (arrays, research, note, versions)}
     return {
         **{twins.path(stem): twins.osl_text(stem) for stem in twins.STEMS},

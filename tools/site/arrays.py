@@ -25,7 +25,6 @@ def public():
 
 
 def arrays(function):
-    """Names of a function's array arguments."""
     parameters = inspect.signature(function).parameters.values()
     return [each.name for each in parameters if each.annotation in ARRAYS]
 

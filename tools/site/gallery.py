@@ -130,7 +130,6 @@ def sphere_picture(image):
 
 
 def label(image, place, text, size=22, anchor="ls"):
-    """Write white text with a thin dark outline on a picture."""
     style = {"font": ImageFont.load_default(size), "anchor": anchor, "stroke_fill": (0, 0, 0)}
     ImageDraw.Draw(image).text(place, text, fill="white", stroke_width=1, **style)
 

@@ -77,8 +77,6 @@ some inputs they do not have the model that they claim.
 
 
 class Tile(NamedTuple):
-    """A picture on the wall."""
-
     host: str
     variant: str  # library or node; "" for a renderer's own nodes
     scene: str

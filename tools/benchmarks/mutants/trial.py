@@ -222,7 +222,6 @@ def _tasks(host: str) -> tuple[Task, ...]:
 
 @cache
 def _titles(nodedef: str) -> frozenset[str]:
-    """Titles of the subjects that use a node definition."""
     definition = library.load_library("eonlib").getNodeDef(nodedef)
     if not definition:
         return frozenset()

@@ -17,7 +17,6 @@ claim = SECTION.claim
 
 
 def pairs(count: int = 100_000) -> np.ndarray:
-    """Pairs of random directions in the hemisphere, (2, count, 3)."""
     rng = np.random.default_rng(1)
     z, phi = rng.random((2, count)), 2.0 * np.pi * rng.random((2, count))
     S = np.sqrt((1.0 - z) * (1.0 + z))

@@ -60,7 +60,6 @@ def determinant() -> Measured:
 
 @claim("Section 4", "general LTC wastes samples below the horizon", "share", least=1e-3)
 def wasted() -> Measured:
-    """Share of LTC's samples that fall below the horizon."""
     d = sampling.ltc_md(COSINES, 1.0)
     share = 1.0 - sampling.cltc_kept_fraction(d)
     at = COSINES[share.argmax()]

@@ -67,7 +67,6 @@ def _shortest_change(patch: str) -> tuple[str, str, str]:
 
 
 def figure(result: Result) -> str:
-    """The error of a result, formatted for pages."""
     return f"{result.error:.0f}" if result.quantity is Quantity.VALUES else f"{result.error:.2g}"
 
 
@@ -85,7 +84,6 @@ def patches(project: str) -> dict[str, Path]:
 
 
 def patches_of(page: str) -> list[Path]:
-    """The patches of a page, from all projects that have a patch for the page."""
     projects = sorted(path.name for path in PATCHES.iterdir() if path.is_dir())
     return [found[page] for each in projects if page in (found := patches(each))]
 

@@ -50,12 +50,10 @@ def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple
 
 
 def shows(issue: Issue, host: str, library: str) -> bool:
-    """Whether an issue is measured on `host` with `library`."""
     return issue.host == host and (issue.library == EONLIB) == (library == EONLIB)
 
 
 def record(issue: Issue, results: Sequence[Result], place: str) -> dict[str, Any]:
-    """Measurements in `results` for the page of an issue."""
     by_row = {(each.check, each.subject): each for each in results}
     judged = [by_row[row] for row in issue.rows]
     rows = [

@@ -129,7 +129,6 @@ def drawn(page: str, folder: Path, repair: bool) -> NDArray[np.float32]:
 
 
 def main() -> None:
-    """Write a picture for each page."""
     mask = visible(SIZE, "sphere").mask[..., None]
     for page, (scene, _) in PAGES.items():
         with TemporaryDirectory(prefix="mxeon-picture-") as base:
