@@ -2,7 +2,7 @@
 
 #include "lib/medium.glsl"
 
-// Node anisotropic_vdf: transmittance of one meter that absorbs and scatters. Light scattered into
+// Node anisotropic_vdf: transmittance of one meter of a scattering medium. Light scattered into
 // the ray is ignored, so the anisotropy has no effect.
 
 void anisotropic_vdf(ClosureData closureData, vec3 absorption, vec3 scattering, float anisotropy,

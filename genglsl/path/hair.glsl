@@ -54,8 +54,8 @@ vec2 path_hair_untilted(vec2 tilted, vec2 tilt)
 }
 
 // Density of wi in 1/sr. The model mirrors inclinations tilted past the end of the fiber, so two
-// directions wi may have the same tilted direction. A draw chooses either wi by cosine.
-// If no wi has the tilted direction, the draw passes the end of the fiber.
+// directions wi may have the same tilted direction. Sampling chooses wi by cosine.
+// If no wi has the tilted direction, the sample tilts past the end of the fiber.
 float path_hair_pdf(PathHair hair, vec3 wo, vec3 wi)
 {
     vec2 inclined_o = vec2(length(wo.yz), wo.x);

@@ -12,7 +12,7 @@
 // Least cosine of a sample.
 #define EON_HORIZON (1.0 / 16777216.0)
 
-// Coefficients of cosines drawn for the parts `multiple` and `upper`. Source:
+// Coefficients to draw cosines of the parts `multiple` and `upper`. Source:
 // tools/fits/eon_sampling.py. Domain: random numbers and their roots in [0, 1]. Largest relative
 // errors: 1.27e-5 of MULTIPLE's density, 5.7e-6 of UPPER's density, 1.8e-7 of ROOT's y.
 #define EON_MULTIPLE0 -0.1221923217

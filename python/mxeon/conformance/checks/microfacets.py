@@ -132,7 +132,7 @@ def reflected_sky(case: Case) -> Iterator[Compared]:
     """Reflection of the sky by a lobe, compared with the mean of the sky weighted by the lobe.
 
     The light of an uneven sky is divided by the light of a uniform sky, so constant factors of the
-    lobe cancel. At a mirrored view, the retroreflective lobe must have the same mean.
+    lobe cancel. From the mirrored view, the retroreflective lobe must match the same mean.
     """
     spec = case.of(FacetSpec)
     views = case.backend.take(spec.stretched)[0].first(8)

@@ -58,7 +58,7 @@ SCATTERED = """if (what < 0.5)
     if (!kept)
         return vec3(0.0);
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
-# Code that is separate from SCATTERED, because drivers inline the whole material at each call.
+# SCATTERED does not include this code, because drivers inline the whole material at each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
 # GLSL code for each named value. The argument `what` of CALL is the position of the name in

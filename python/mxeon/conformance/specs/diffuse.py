@@ -37,8 +37,8 @@ VALUE = sum_in(
 # of H.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, including the fit of H")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
-# A rounding of a cosine of at least 1/4 is amplified by 4 in Oren and Nayar's ratio s / t, by 3 in
-# a sine, and by 2 in other factors, which is 9 in all.
+# Oren and Nayar's ratio s / t amplifies the rounding of a cosine of at least 1/4 by 4, a sine by 3,
+# and the other factors by 2. The sum is 9.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),

@@ -357,8 +357,8 @@ def _has_curve(batch: Batch) -> samples.Mask:
 
     A correct shader may compute the curve from wo . wh or from wi . wh. The two cosines differ by
     (|wo|^2 - |wi|^2) / |wo + wi|, because rounded vectors are not exactly unit vectors. If wo and
-    wi are nearly opposite, the cosines differ too much, a curve with a dark color90 has few correct
-    digits, and shaders clamp the cosine to GRAZING.
+    wi are nearly opposite, the cosines differ too much, and shaders clamp the cosine to GRAZING. A
+    curve with a dark color90 then has few correct digits.
     """
     length = np.linalg.norm(batch.wo + batch.wi, axis=1)
     rounding = np.abs((batch.wo**2).sum(axis=1) - (batch.wi**2).sum(axis=1))

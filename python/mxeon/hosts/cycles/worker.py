@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python.
+"""Code of the hosts `cycles`, `osl` and `eevee` that runs in Blender's Python.
 
 `mxeon.hosts.process` starts this script.
 """

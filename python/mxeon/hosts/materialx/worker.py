@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `materialx` host in which MaterialX's renderer runs; see `mxeon.hosts.process`.
+"""Code of the `materialx` host that runs MaterialX's renderer; see `mxeon.hosts.process`.
 
 The first argument of `start` is a folder whose `libraries` replace the libraries of MaterialX, or
 "". The other arguments are folders of other libraries. The X display ends with the process.

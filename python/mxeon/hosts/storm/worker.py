@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The half of the `storm` host that runs in Blender's Python; see `mxeon.hosts.process`.
+"""Code of the `storm` host that runs in Blender's Python; see `mxeon.hosts.process`.
 
 The first argument of `start` is a folder whose `libraries` replace the libraries of Blender's
 MaterialX, or "". The other arguments are folders of other libraries.
