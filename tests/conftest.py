@@ -44,8 +44,7 @@ def pytest_configure():
 def pytest_collection():
     """Import the models with line tracing on, and collect the tests with tracing off.
 
-    Garbage collection is off during the import and the collection. Later collections ignore the
-    objects that exist by then.
+    Garbage collection is off meanwhile, and later ignores the objects that exist by then.
     """
     for module in walk_packages(models.__path__, f"{models.__name__}."):
         import_module(module.name)

@@ -52,9 +52,9 @@ def test_every_check_of_every_node_has_the_same_verdict_with_another_seed(
 SCHLICK, DIELECTRIC = (
     f"{name}_bsdf, scatter_mode R" for name in ("generalized_schlick", "dielectric")
 )
-# Checks, subjects and seeds with rare samples: in the first cells of an albedo table, with a
-# Schlick curve below 0, at a critical angle, of lobes that are almost never sampled, and of a lobe
-# with a fitted albedo of 0.
+# Checks, subjects and seeds that draw rare cases: the first cells of an albedo table, a Schlick
+# curve below 0, a critical angle, lobes that are almost never sampled, and a lobe whose fitted
+# albedo is 0.
 RARE = (
     ("methods", SCHLICK, 4),
     ("layer", SCHLICK, 12),

@@ -135,7 +135,8 @@ def test_stock_is_wrong_from_behind(host, judged):
 
 GLASS = surface("open_pbr_surface", transmission_weight=1.0, specular_roughness=0.8)
 # Storm renders transmission as opacity. A lobe in mode T therefore subtracts no light, because the
-# layer in mode R above the lobe does. In the modified copy, both lobes subtract reflected light.
+# layer in mode R above already subtracts the reflected light. In the modified copy, both lobes
+# subtract reflected light.
 BELOW = "bool below = scatter_mode == 1;", "bool below = false;"
 
 

@@ -109,9 +109,9 @@ TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 
 # Relative difference between the density returned with a sample and the density computed from the
-# sample's direction. Each computation has 4 (6 + 6) roundings in a fourth power, 6 x 1.8
-# roundings in det M, which is a difference of terms <= 1.6 and at least 0.91, and 20 other
-# roundings. Near the boundary of CLTC, the density also has an absolute error of DIRECTION.
+# sample's direction. Each computation has 4 (6 + 6) roundings in a fourth power, and 20 other
+# roundings. det M, a difference of terms <= 1.6 that is at least 0.91, adds 6 x 1.8 roundings. Near
+# the boundary of CLTC, the density also has an absolute error of DIRECTION.
 SAMPLE_PDF = 2 * (4 * (6 + 6) + 6 * 1.8 + 20) * ROUNDING
 
 # Absolute error of a density if its sample has the error TURNED_DIRECTION. At mu_o = 0.3, |s / t|
@@ -133,9 +133,9 @@ LUNE = (4 + FUNCTION) * ROUNDING + RIM
 # At the boundary, the slope of the density jumps by at most 1 per steradian and radian.
 KINK_QUADRATURE = (pi / 2 / 64) ** 2 / 12 * pi
 
-# RHO is the relative error of an inverted albedo, whose longest chain has 11 roundings. ROUND_TRIP
-# also includes the roundings of the albedo and twice the error of rho, because an albedo grows at
-# most twice as fast as rho.
+# RHO is the relative error of an inverted albedo, which has at most 11 roundings. ROUND_TRIP also
+# includes the roundings of the albedo and twice the error of rho, because an albedo grows at most
+# twice as fast as rho.
 RHO = 11.0 * ROUNDING
 ROUND_TRIP = 1e-14
 
@@ -155,7 +155,7 @@ SUMMED_DIRECTIONS = 2.5 * 8e-4
 
 # Relative difference of two figures that are printed with two digits, as on the pages on upstream
 # defects. Rounding changes each figure by at most half a unit of the second digit, which is 5 %.
-# Graphics drivers differ by a unit of the third digit, which is 0.01.
+# Graphics drivers differ by a unit of the third digit, which is 1 %.
 PRINTED = 0.05 + 0.05 + 0.01
 
 # --- microfacet and sheen nodes ------------------------------------------------------------------
