@@ -294,6 +294,18 @@ def test_a_graph_of_two_versions_of_a_node_is_reported_once(judged, tmp_path):
     assert "1 more with the same source" in said(result)
 
 
+def test_an_opaque_node_need_not_clamp_weights_outside_the_range_of_the_text(judged, tmp_path):
+    """MaterialX's pull request 3022 passes 1 - weight without limits."""
+    text = "bsdf.throughput = vec3({});"
+    for passed, verdict in (("1.0 - weight", DIFFERS), ("1.0 - weight * weight", FAILED)):
+        edit = text.format("0.0"), text.format(passed)
+        library = wrong_stock(tmp_path / verdict, "pbrlib/genglsl/mx_translucent_bsdf.glsl", edit)
+        result = judged("throughput", "translucent_bsdf", library=library)
+        assert result.verdict == verdict
+        assert has(result, "weight_unlimited") == (verdict == DIFFERS)
+        assert not (result.pages and verdict == DIFFERS)
+
+
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
     """If the cache no longer holds the release, a run loads the release again."""
     file, old, new, *wanted = CHANGED["alpha"]

@@ -144,6 +144,7 @@ FAULTS = {
     "mean_color": "every channel takes the mean of the color",
     "color_ignored": "the color is ignored; {x:g} is used instead",
     "color_clamped": "the color is clamped to 1",
+    "weight_unlimited": "a weight outside [0, 1], the range in the specification, is not clamped",
     "color_squared": "the color is squared",
     "color_square_root": "the color is replaced by its square root",
     "roughness_squared": "the roughness is squared",

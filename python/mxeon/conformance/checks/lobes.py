@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 
@@ -166,17 +166,28 @@ ZEROS = (*product(["throughput"], BRANCHES), *product(["response"], ["transmissi
 def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
     """Outputs of an opaque node. Throughputs must be 1 - weight, and other outputs must be 0.
 
-    Hair has no input `weight` and counts as a lobe of weight 1.
+    Weights are clamped to [0, 1]. Hair has no input `weight` and counts as a lobe of weight 1.
     """
     for batch in case.few:
         weight = np.array(np.broadcast_to(batch.inputs.get("weight", 1.0), len(batch.wo)))
         if "weight" in batch.inputs:
-            weight[0] = 2.0  # a weight above 1 must act like a weight of 1
+            weight[0] = 2.0
             batch = batch.altered(weight=weight)
         values = case.evaluating.evaluate(case.inputs(batch), branch, output)
         passed = 1.0 - np.clip(weight, 0.0, 1.0) if output == "throughput" else 0.0 * weight
         expected = np.repeat(passed[:, np.newaxis], 3, axis=1)
         yield Compared(batch, case.throughputs(batch, values), expected)
+
+
+def diagnose_opaque(case: Case) -> Diagnosis:
+    """Explain outputs of an opaque node. The text limits weights to [0, 1], so others are open."""
+    found = {each: list(opaque_values(case, *each)) for each in ZEROS}
+    for compared in chain.from_iterable(found.values()):
+        weight = np.broadcast_to(compared.batch.inputs.get("weight", 1.0), len(compared.batch.wo))
+        wrong = OPAQUE.wrong(compared).reshape(len(weight), -1).any(axis=1)
+        if np.any(wrong & (weight >= 0.0) & (weight <= 1.0)):
+            return diagnosis.diagnose_throughput(found)
+    return Diagnosis((Cause(Kind.FAULT, "weight_unlimited"),), permitted=True)
 
 
 def reciprocity(case: Case) -> Iterator[Compared]:
@@ -450,9 +461,7 @@ ROWS = (
           claim="In every branch, an opaque node passes the fraction 1 - weight of the light from below.",
           applies=(PLAIN - LAYERS) | MODES,
           measure=lambda case: (each for row in ZEROS for each in opaque_values(case, *row)),
-          tolerance=OPAQUE, control=controls.take_response,
-          explain=lambda case: diagnosis.diagnose_throughput(
-              {each: list(opaque_values(case, *each)) for each in ZEROS}),
+          tolerance=OPAQUE, control=controls.take_response, explain=diagnose_opaque, open=True,
           requires=Ability.PAIRS | Ability.LIGHT),
     Check(key="reciprocity", claim="Exchanging the two directions does not change the BRDF.",
           applies=(RECIPROCAL - SUBSURFACE) | ROUGH | LAMBERT | BURLEY, measure=reciprocity,
