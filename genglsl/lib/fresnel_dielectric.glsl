@@ -80,7 +80,7 @@ vec2 eonlib_dielectric_passing(float mu, float alpha, float ior)
     vec2 Q = part * S;
     vec2 q = 4.0 * Q * (1.0 - Q);
     vec2 t = sqrt(1.0 + (4.0 * k2 - 1.0) * q) + 1.0 - 2.0 * Q;
-    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // sqrt(n^2 - 1 + c^2) / cosine c
+    vec2 g = ior * sqrt(max(1.0 - 4.0 * e2 * q / (t * t), 0.0));  // sqrt(n^2 - 1 + c^2) / c
     vec2 s = 1.0 / (1.0 + g);
     vec2 p = ior / max(ior * ior + g, 1e-30);
     // Rounding may make 1 - F exceed 1.

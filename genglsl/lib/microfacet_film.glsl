@@ -14,8 +14,8 @@
 #define FILM_AVERAGE_2 vec3(0.55701, 0.43737, 0.13743)
 #define FILM_AVERAGE_3 vec3(0.88292, 0.4528, 0.088681)
 
-// For visible facets, Gauss's rule for a semicircle over [-1, 1] has the nodes x, 0 and -x with
-// weights (1 - x^2) / 2. FILM_OUTER is x.
+// For visible facets, Gauss's rule for a semicircle has the nodes -x, 0 and x = FILM_OUTER. A node
+// y has the weight (1 - y^2) / 2.
 #define FILM_OUTER 0.70710678
 
 // A node is (cosine, width, weight of visible facets, weight of F_ss). Nodes 0 to 2 are for

@@ -154,7 +154,7 @@ vec3 eon_brdf(vec3 wo, vec3 wi, vec3 rho, float roughness)
 }
 
 // BRDF of EON with the albedo of Eq. (14): [Portsmouth2025], Eq. (16). Below mu = 0.0014, the
-// approximate loss is negative and counts as 0, but the paper's listing raises 1 - E to 1e-7.
+// approximate loss is negative and counts as 0, but the listing clamps 1 - E to 1e-7.
 vec3 eon_brdf_approx(vec3 wo, vec3 wi, vec3 rho, float roughness)
 {
     float single_scatter = 1.0 + roughness * fon_quotient(wo.z, wi.z, oren_nayar_s(wo, wi));

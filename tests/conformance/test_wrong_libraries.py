@@ -295,7 +295,7 @@ def test_a_graph_of_two_versions_of_a_node_is_reported_once(judged, tmp_path):
 
 
 def test_an_opaque_node_need_not_clamp_weights_outside_the_range_of_the_text(judged, tmp_path):
-    """MaterialX's pull request 3022 passes 1 - weight without limits."""
+    """In MaterialX's pull request 3022, the throughput is 1 - weight and is not clamped."""
     text = "bsdf.throughput = vec3({});"
     for passed, verdict in (("1.0 - weight", DIFFERS), ("1.0 - weight * weight", FAILED)):
         edit = text.format("0.0"), text.format(passed)

@@ -18,7 +18,7 @@ from tests.support.documents import connected, material
 TARGETS = ("glsl", "essl", "vulkan", "wgsl", "msl", "slang", "osl", "mdl")
 OUT = "../out"
 
-# Command lines to mutate. Commands that would be slow name a host that does not exist.
+# Command lines to mutate. To be fast, some commands name a host that does not exist.
 COMMANDS = (
     ("generate", "base.mtlx", "--target", "osl", "--outputPath", OUT),
     ("generate", "base.mtlx", "--target", "glsl", "--element", "look", "--json", "--outputPath", OUT),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents in UTF-8 are read. Errors in documents cause one line with place, rule and value."""
+"""Documents in UTF-8 are read. An error is reported in one line with the place, the rule and the value."""
 
 import re
 

@@ -119,9 +119,9 @@ SAMPLE_PDF = 2 * (4 * (6 + 6) + 6 * 1.8 + 20) * ROUNDING
 # divided by pi.
 TURNED_PDF = (1 + 2 * 3.2) / pi * TURNED_DIRECTION
 
-# Relative error of the height of a clipped cosine, which is the root of a product of positive
-# terms. The root halves four roundings in the chord's ends and six roundings in the terms, and adds
-# one.
+# Relative error of the height of a clipped cosine, a square root of a product of positive terms.
+# The root halves four rounding errors of the chord's ends and six of the terms, and is itself
+# rounded once.
 RIM = (0.5 * (4 + 6) + 1) * ROUNDING
 
 # Absolute error of the side of the lune. The coordinates x and z are at most 1 and have 4

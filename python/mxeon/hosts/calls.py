@@ -245,7 +245,7 @@ def _ports(shader: Shader) -> dict[str, Input]:
 
 @lru_cache(maxsize=16)
 def booleans(text: str) -> list[str]:
-    """Names of the integer inputs that a text for WGSL converts to booleans."""
+    """Names of the integer inputs that a shader for WGSL converts to booleans."""
     return BOOLEAN.findall(text)
 
 

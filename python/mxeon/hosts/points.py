@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures in which every pixel is an exact point, because a vertex stage runs for each point.
+"""Pictures that are exact at every pixel, because a vertex stage runs for each pixel.
 
 A mesh that is exact at each pixel needs two triangles per pixel, and drivers shade whole blocks of
 pixels for each triangle. Instead, a host runs a generated vertex stage for points and captures the

@@ -24,8 +24,8 @@ except ImportError:
 TRANSLATOR = ("spirv-cross", "--hlsl", "--shader-model", "60")
 COMPILER = ("glslangValidator", "-D", "-V", "--quiet", "-S", "frag", "-e", "main")
 # The option -Od turns off optimization, which takes half a minute for path tracers. Two kinds of
-# texts still need optimization: Vulkan refuses functions with texture parameters, and wgpu refuses
-# stages with unused inputs.
+# shaders must be optimized, because Vulkan refuses functions with texture parameters, and wgpu
+# refuses stages with unused inputs.
 KEEP_FUNCTIONS = "-Od"
 OPTIMIZED = re.compile(r"^\w+ \w+\(.*\bTexture2D\b| : TEXCOORD\d+;$", re.MULTILINE)
 REGISTER = re.compile(r"^(?=.* : register\([bst](\d+), space(\d+)\))", re.MULTILINE)

@@ -270,7 +270,7 @@ def run(command: Sequence[str], text: str = "", host: str = "vulkan") -> None:
 
 
 def _std140(members: str, uniforms: raster.Uniforms) -> bytes:
-    """Bytes of a block up to the first structure, because no uniforms follow a structure."""
+    """Bytes of a uniform block, which ends at the first structure in `members`."""
     data, offset = bytearray(BLOCK_SIZE), 0
     for kind, name in re.findall(r"(\w+) (\w+);", members):
         if kind not in STD140:

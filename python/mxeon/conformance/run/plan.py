@@ -313,8 +313,8 @@ def make_plan(
         if files and host_row(host).scenes and not host_row(host).target:
             tasks += [Task(PICTURE, file, host, RENDERER_NODES) for file in readable]
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
-    # Report hosts that measure nothing, except renderers that read no documents, because DOCUMENT
-    # tasks report these renderers.
+    # Report hosts that measure nothing. Renderers that read no documents are left out, because
+    # DOCUMENT tasks report them.
     measuring = {
         task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
     }

@@ -134,7 +134,7 @@ class EmissionSpec(spec.RowSpec[emissions.Value]):
         return nodes.document_text(axis + text + EMITTING_TEXT)
 
     def values(self, function: emissions.Value, batch: Batch) -> Array:
-        """Radiance toward each view, (N, 3). Views are clipped to remove roundings above 1."""
+        """Radiance toward each view, (N, 3). Rounding may make components of a view exceed 1, so views are clipped."""
         return function(np.clip(batch.wo, -1.0, 1.0), spec.broadcast_inputs(batch))
 
     @property

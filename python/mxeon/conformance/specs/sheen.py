@@ -73,7 +73,7 @@ CONTY_KULLA = lobes.PbrSpec(
         **lobes.lobe_errors(
             CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_ALBEDO, FLAT_FRAME, 2e-4
         ),
-        # Exchanged directions have the same half vector, and the same power of the sine.
+        # If wo and wi are swapped, the half vector and the power of the sine stay the same.
         "reciprocity": sum_of(roundings(32)),
     },
     outside_errors={("value", "roughness", x): conty_kulla_value(2.0 / x) for x in (1e-3, 1e-4)},

@@ -220,7 +220,7 @@ def draw(
     environment: float | None,
     samples: int,
 ) -> None:
-    """Draw the mesh in a file with a node in EEVEE, and write the pixels, row 0 at the top."""
+    """Render the mesh of a file in EEVEE, shaded by a node. Row 0 of the pixels is at the top."""
     path, data, scene = f"{output}.exr", np.load(mesh), unit_scene(2.0)
     set_output(scene, path, size)
     scene.render.engine = "BLENDER_EEVEE"

@@ -109,7 +109,7 @@ def prelude(text: str) -> str:
             _function("__operator__mul__", MULTIPLE, closure, kind),
             _function("__operator__mul__", MULTIPLE, kind, closure),
         ]
-    # Closures accept any keywords, so that unknown keywords are reported.
+    # Closures accept any keywords. The module `trees` reports unknown keywords.
     for name in names:
         arguments = (*CLOSURES[name].arguments.values(),)
         for count in range(PAIRS + 1 if arguments else 1):
