@@ -21,7 +21,13 @@ from tests.support.verdicts import (
     has,
     said,
 )
-from tests.support.wrong_libraries import copy_of_eonlib, place_of, replace_text, wrong_stock
+from tests.support.wrong_libraries import (
+    copy_of_eonlib,
+    copy_of_stock,
+    place_of,
+    replace_text,
+    wrong_stock,
+)
 
 ON = "oren_nayar_diffuse_bsdf, energy_compensation true"
 MDL = "libraries/diffuse/eonlib_genmdl_impl.mtlx"
@@ -304,6 +310,21 @@ def test_an_opaque_node_need_not_clamp_weights_outside_the_range_of_the_text(jud
         assert result.verdict == verdict
         assert has(result, "weight_unlimited") == (verdict == DIFFERS)
         assert not (result.pages and verdict == DIFFERS)
+
+
+@pytest.mark.parametrize("node, wrong", [("conductor_bsdf", True), ("translucent_bsdf", False)])
+def test_a_requested_node_of_a_folder_is_compared_with_the_release(
+    monkeypatch, tmp_path, node, wrong
+):
+    keep(monkeypatch, lambda task: task.check == "release")
+    file, old, new, words, *values = CHANGED["default"]
+    library = wrong_stock(tmp_path, file, (old, new))
+    copy_of_stock(tmp_path, "pbrlib/genosl", "pbrlib/genglsl")
+    run = check(None, ["gl"], library, nodes=[node], workers=0)
+    [result] = run.results
+    assert (result.verdict == FAILED) == wrong and result.control.caught
+    assert not wrong or has(result, "release", words, *values)
+    assert dict(run.unjudged) == {"osl": "no host for it ran"}
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):

@@ -9,7 +9,7 @@ additional nodes in MaterialX's own documents may be a newer version, so differe
 are permitted.
 """
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Collection, Container, Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -186,8 +186,19 @@ def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple
 class Comparison:
     """Compares a library with the release. A host evaluates nodes whose texts differ."""
 
-    def __init__(self, host: Host, library: str, release: mx.Document, image: str) -> None:
+    def __init__(
+        self,
+        host: Host,
+        library: str,
+        release: mx.Document,
+        image: str,
+        nodes: Container[str] = (),  # categories to compare; () for all
+    ) -> None:
         self._host, self._library, self._release, self._image = host, library, release, image
+        self._nodes = nodes
+        self._compared = [
+            each for each in release.getNodeDefs() if not nodes or each.getNodeString() in nodes
+        ]
         self._document = load_library(library)
         self._target = generators.GENERATORS[host.target].create().getTarget()
         self.unjudged: list[tuple[str, str]] = []
@@ -199,9 +210,14 @@ class Comparison:
         difference is added as a negative control.
         """
         release, eonlib = self._release, load_library("eonlib").getNodeDefs()
-        additional = (each for each in eonlib if release.getNodeDef(each.getName()) != each)
+        additional = (
+            each
+            for each in eonlib
+            if release.getNodeDef(each.getName()) != each
+            if not self._nodes or each.getNodeString() in self._nodes
+        )
         rows: list[str] = []
-        for number, reference in enumerate((*release.getNodeDefs(), *additional)):
+        for number, reference in enumerate((*self._compared, *additional)):
             name = reference.getName()
             own, released = (each.getNodeDef(name) for each in (self._document, release))
             if own is None or (number and own in (reference, released)):
@@ -216,7 +232,8 @@ class Comparison:
                     if each.startswith(RANGE) and not facts[each]:
                         facts[each] = expected[each]
             rows += differences(facts, expected)
-        rows += differences(*(unit_facts(each, release) for each in (self._document, release)))
+        if not self._nodes:
+            rows += differences(*(unit_facts(each, release) for each in (self._document, release)))
         triples = dict.fromkeys(zip(rows[::3], rows[1::3], rows[2::3], strict=True))
         return [Cause(Kind.DEFECT, RELEASE, ("", *each)) for each in triples]
 
@@ -227,7 +244,7 @@ class Comparison:
         If several nodes differ by the same change of text or share a graph, only the first node
         with different values is reported.
         """
-        names = (definition.getName() for definition in self._release.getNodeDefs())
+        names = (definition.getName() for definition in self._compared)
         groups = grouped(names, self._change)
         groups.pop(None, None)
         causes: list[Cause] = []
@@ -520,9 +537,12 @@ def largest_error(values: Array, expected: Array) -> float:
 
 
 def check_release(
-    host: Host, library: str
+    host: Host, library: str, nodes: Collection[str] = ()
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
-    """The result of comparing a library with the installed release, and the subjects not judged."""
+    """The result of comparing a library with the installed release, and the subjects not judged.
+
+    If `nodes` are given, only their definitions, graphs and texts are compared.
+    """
     release = released(library)
     if release is None:
         why = f"the library lacks nodes of MaterialX {mx.getVersionString()}, so it is for an older version"
@@ -531,7 +551,7 @@ def check_release(
     with TemporaryDirectory() as folder:
         image = str(Path(folder, "image.exr"))  # an image with four different channels
         write_exr(image, generator().random((8, 8, 4), np.float32), {})
-        comparison = Comparison(host, library, release, image)
+        comparison = Comparison(host, library, release, image, nodes)
 
         def measure(wrong: bool) -> Measurement:
             causes = [*comparison.definitions(wrong), *([] if wrong else comparison.nodes)]

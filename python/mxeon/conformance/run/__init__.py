@@ -26,6 +26,7 @@ from mxeon.shaders.document.policy import DEFAULT, Policy
 from mxeon.shaders.document.references import documents_in, files_read
 from mxeon.shaders.library import examples_folder, library_name, untested
 from mxeon.shaders.methods import UNCHOSEN, Methods
+from mxeon.shaders.targets import CLASSES
 
 __all__ = ["check", "read_run", "to_run", "work"]
 
@@ -230,8 +231,10 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         places.setdefault(text, []).extend([] if place in text else [place])
     hosts = tuple(dict.fromkeys(host for each in done for host in each.hosts))
     audited = any(task.check == SOURCE for task in planned.tasks)
+    own = (file for files in planned.libraries.values() for file in files["folder"])
+    written = set() if planned.contents else {part for file in own for part in file.split("/")}
     unjudged = (
-        *(texts_not_run({host.name for host in hosts}) if audited else ()),
+        *texts_not_run({host.name for host in hosts}, None if audited else written),
         *planned.unjudged,
         *(row for each in done for row in each.unjudged),
     )
@@ -252,11 +255,20 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
     )
 
 
-def texts_not_run(hosts: Container[str]) -> Iterator[tuple[str, str]]:
-    """Targets that none of the given hosts compiles, and the reasons."""
+def texts_not_run(
+    hosts: Container[str], written: Container[str] | None = None
+) -> Iterator[tuple[str, str]]:
+    """Targets that none of the given hosts compiles, and the reasons.
+
+    With `written`, only targets whose folder of sources is in `written`, such as "genosl", and is
+    not the folder of a target that a host compiles.
+    """
     targets = {row.target for row in HOSTS if row.name in hosts}
+    folders = {CLASSES[target][0].lower() for target in targets}
     for row in HOSTS:
-        if row.target and row.target not in targets:
+        folder = CLASSES[row.target][0].lower()
+        named = written is None or (folder in written and folder not in folders)
+        if row.target not in targets and named:
             targets.add(row.target)
             yield row.target, f"needs {row.needs}" if row.needs else "no host for it ran"
 

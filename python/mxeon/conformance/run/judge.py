@@ -119,7 +119,8 @@ class Judge:
                     return Findings(pictures=pictures.studio_pictures(*subject))
                 return Findings()
             if task.check == release.RELEASE:
-                compared, unjudged = release.check_release(host, task.library)
+                nodes = () if task.subject == plan.EVERY_NODE else task.subject.split(",")
+                compared, unjudged = release.check_release(host, task.library, nodes)
                 return Findings(compared, unjudged=unjudged)
             if task.check == FUNCTIONS:
                 return Findings(shader_functions.judge_functions(host, task.library))

@@ -158,7 +158,8 @@ class Task:
     # Key of a row of `mxeon.conformance.checks`, or HOST, SOURCE, PICTURE, STUDIO, FUNCTIONS,
     # RELEASE or DOCUMENT.
     check: str
-    subject: str  # title of a node, path of a document, SHADER_FUNCTIONS or EVERY_NODE
+    # Title of a node, path of a document, SHADER_FUNCTIONS, EVERY_NODE, or nodes after RELEASE
+    subject: str
     host: str
     library: str
     seed: int = 1
@@ -312,6 +313,7 @@ def make_plan(
             tasks += _checks_of(spec, host, RENDERER_NODES)
         if files and host_row(host).scenes and not host_row(host).target:
             tasks += [Task(PICTURE, file, host, RENDERER_NODES) for file in readable]
+    comparisons = [each for each in tasks if each.check == RELEASE and os.path.isabs(each.library)]
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
     # Report hosts that measure nothing. Renderers that read no documents are left out, because
     # DOCUMENT tasks report them.
@@ -328,6 +330,11 @@ def make_plan(
         tasks += [Task(HOST, node, hosts[0], libraries[0]) for node in unmeasured]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
         documents = []
+    # A folder's definitions and graphs of the requested nodes may differ from the release.
+    own = sorted({each.getNodeString() for each in load_library("stock").getNodeDefs()} & {*nodes})
+    if own and not any(task.check == RELEASE for task in tasks):
+        compared_there = (each for each in comparisons if each.host in measuring)
+        tasks += [replace(each, subject=",".join(own)) for each in compared_there]
     audited = any(task.check == SOURCE for task in tasks)
     defining = (*libraries, *policy.definitions)
     return Plan(
