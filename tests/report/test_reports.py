@@ -19,11 +19,11 @@ from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.results.records import make_converter
 from mxeon.models import table as reference
 from mxeon.report import to_json, write
-from mxeon.report.diff import BETTER, LOST, OTHER, WORSE, compare, read_results
+from mxeon.report.diff import BETTER, LISTED, LOST, OTHER, WORSE, compare, read_results
 from mxeon.shaders.library import examples_folder
 from mxeon.survey.field import by_harm, read_field
 from tests.support.availability import package
-from tests.support.results import Control, Identity, Picture, Region, Result, Run, caused
+from tests.support.results import Control, Identity, Picture, Region, Result, Run, caused, quoted
 from tests.support.verdicts import DIFFERS, FAILED, NOT_RUN, PASSED
 from tests.support.wrong_libraries import wrong_stock_node
 
@@ -192,6 +192,9 @@ GATE = {
     "lost": ({}, {"verdict": NOT_RUN, "reason": "timed out"}, LOST, "failed at 0.3 -> not run; timed"),
     "found": ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
     "implied": ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
+    "caused": ({"verdict": PASSED, "error": 0.0}, {"diagnosis": quoted("no roughness")}, WORSE, "0.3; no roughness"),
+    "uncaught": ({"verdict": PASSED}, {"error": 0.0, "control": Control("s clamped", 0.0, False)}, WORSE,
+                 "failed at 0; the negative control is not caught: s clamped, 0"),
 }  # fmt: skip
 
 
@@ -210,6 +213,15 @@ def test_the_rules_tell_a_regression_from_noise_and_from_a_repair(row, tmp_path,
     assert diff(tmp_path, *runs, "--json") == status
     [found] = json.loads(capsys.readouterr().out)
     assert (found["kind"], found["place"]) == (kind, PLACE)
+
+
+def test_what_the_later_run_leaves_out_is_counted_if_it_is_much(tmp_path, capsys):
+    titles = [f"node {number}" for number in range(2 * LISTED)]
+    rows = tuple(made_run(subject=each).results[0] for each in titles)
+    whole = replace(TWO, results=rows)
+    assert diff(tmp_path, whole, replace(TWO, results=rows[:1], documents=TWO.documents[:1])) == 0
+    counts = f"not in the later run: 1 document, {2 * LISTED - 1} nodes and materials"
+    assert capsys.readouterr().out == f"{counts}\n{2 * LISTED} other\n"
 
 
 SCHLICK = "generalized_schlick_bsdf"

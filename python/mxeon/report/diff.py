@@ -38,6 +38,7 @@ from mxeon.report import JSON_FORMAT, SCHEMA
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
 PLACE = ("host", "library", "check", "subject")
+LISTED = 12  # maximum number of listed entries that the later run leaves out
 SAMPLED = (Quantity.VALUES, Quantity.PIXELS)  # counts that depend on which samples are drawn
 # For the same samples, errors on different engines or drivers differ by at most the factor EQUAL,
 # plus FUNCTIONS, which is the error of built-in functions.
@@ -234,7 +235,14 @@ def _group(change: Change) -> tuple[str, str, str, str]:
 
 
 def lines(changes: Sequence[Change]) -> Iterator[str]:
-    """Format sorted changes as text, grouped by kind, host and library, then by subject."""
+    """Format sorted changes as text, grouped by kind, host and library, then by subject.
+
+    If a run leaves out much of the other run, only the number of these changes is stated.
+    """
+    out = [each for each in changes if each.kind == OTHER and each.after in ("none", "removed")]
+    tally = Counter(each.kind for each in changes)
+    if len(out) > LISTED:
+        changes = [each for each in changes if each not in out]
     for (kind, location), group in groupby(changes, key=lambda each: (each.kind, each.location)):
         yield f"{kind}: {one_line(location)}".rstrip()
         for subject, rows in groupby(group, key=lambda each: each.subject):
@@ -242,7 +250,10 @@ def lines(changes: Sequence[Change]) -> Iterator[str]:
                 yield f"  {one_line(subject)}"
             indent = "    " if subject else "  "
             yield from (f"{indent}{one_line(each)}" for each in rows)
-    tally = Counter(each.kind for each in changes)
+    if len(out) > LISTED:
+        files = sum(each.after == "removed" for each in out)
+        places = {(each.location, each.subject) for each in out if each.after == "none"}
+        yield f"not in the later run: {words.counted(files, 'document')}, {len(places)} nodes and materials"
     yield ", ".join(f"{tally[kind]} {kind}" for kind in KINDS if tally[kind]) or "no difference"
 
 
@@ -345,8 +356,11 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
     fallen = tuple(replace(x, before=x.after, after=x.before) for x in _growths(new, old))
     if old.verdict != new.verdict:
         worse = RANKS.index(new.verdict) > RANKS.index(old.verdict)
-        explained = old.verdict == DIFFERS and worse
-        return WORSE if worse else BETTER, words.UNEXPLAINED * explained, grown if worse else fallen
+        reason = words.UNEXPLAINED if old.verdict == DIFFERS and worse else ""
+        if old.verdict == PASSED and new.verdict == FAILED:
+            # If the error is within the tolerance, the check's negative control passed too.
+            reason = words.excess(new) if new.within else words.diagnosis(new.diagnosis)
+        return WORSE if worse else BETTER, reason, grown if worse else fallen
     if new.verdict == PASSED:
         return (OTHER, "", grown or fallen) if grown or fallen else ("", "", ())
     if old.pages and not new.pages and new.verdict == FAILED and not _is_repaired(old, new):
