@@ -23,7 +23,17 @@ from mxeon.report import to_json
 from tests.support.command import CLAY, PLASTER
 from tests.support.documents import connected, image, material, textured
 from tests.support.plans import keep_checks
-from tests.support.results import EON, Difference, Region, Run, caused, made, made_run, quoted
+from tests.support.results import (
+    EON,
+    Control,
+    Difference,
+    Region,
+    Run,
+    caused,
+    made,
+    made_run,
+    quoted,
+)
 from tests.support.verdicts import FAILED, NOT_RUN
 from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock
 
@@ -94,6 +104,13 @@ def test_every_section_has_a_longest_length_and_counts_what_it_leaves_out():
     assert len(lines) == LONGEST["material"] + LONGEST["node"] + LONGEST["cause"] + 3
     assert lines[-2] == "2 more materials, 3 more nodes, 3 more causes: --full"
     assert len(answer(run, full=True)) == 6 + 1 + 6 + 1 + 6 + 1
+
+
+def test_a_check_whose_control_passed_comes_after_wrong_values():
+    uncaught = {"error": 0.0, "control": Control("no color", 0.0, False)}
+    rows = [made(FAILED, "energy", **uncaught, diagnosis=caused("control")), made(FAILED, "frame")]
+    _verdict, first, second = map(str, answer(replace(made_run(*rows), contents={})))
+    assert "(frame)" in first and "(energy)" in second
 
 
 GLASS = "dielectric_bsdf, scatter_mode R"

@@ -102,7 +102,11 @@ def _annotations(run: Run) -> Iterator[str]:
 
 
 def _details(run: Run) -> Iterator[Line]:
-    """A line for each result of a check, and a line for each file of each library folder."""
+    """A line for each file of each library folder, and a line for each result of a check."""
+    for folder, origins in run.libraries.items():
+        for origin, names in origins.items():
+            for name in names or ["nothing"]:
+                yield _line(f"library {folder}: {origin}: {name}")
     for each in run.results:
         numbers = each.reason or words.explanation(each)
         if each.verdict == PASSED:
@@ -110,10 +114,6 @@ def _details(run: Run) -> Iterator[Line]:
             numbers = f"{error:.3g} <= {tolerance:.3g} {each.unit}" if tolerance else ""
         about = f"{each.verdict}: {each.location}, {each.check}, {each.subject}"
         yield _line(f"{about}: {numbers}".rstrip(": "), each.verdict)
-    for folder, origins in run.libraries.items():
-        for origin, names in origins.items():
-            for name in names or ["nothing"]:
-                yield _line(f"library {folder}: {origin}: {name}")
 
 
 def _line(text: str, verdict: Verdict | None = None) -> Line:
@@ -440,17 +440,18 @@ def _remedy(run: Run) -> Iterator[str]:
 def _failures(run: Run) -> Iterator[Line]:
     """A line for each page or diagnosis that explains failures.
 
-    Four questions sort the failures, and "no" comes first: is the library only compared, are the
-    inputs used by no document, does a page exist, is the light another than in wrong pictures?
+    Five questions sort the failures, and "no" comes first: is the library only compared, are the
+    inputs used by no document, does a page exist, did only the negative control fail the check, is
+    the light another than in wrong pictures?
     """
     failures = [each for each in run.results if each.verdict == FAILED]
     white = any(each.difference and each.difference.scene == "furnace" for each in failures)
 
-    def order(result: Result) -> tuple[bool, bool, bool, bool, float]:
+    def order(result: Result) -> tuple[bool, bool, bool, bool, bool, float]:
         lit = result.check in (WHITE_CHECKS if white else DIRECT)
         # Errors of albedos and throughputs have a common scale, so the largest error comes first.
         size = (result.error or 0.0) if white and lit else 0.0
-        known = run.is_elsewhere(result), bool(result.pages)
+        known = run.is_elsewhere(result), bool(result.pages), result.within
         return result.library in run.compared, *known, not lit, -size
 
     def place(result: Result) -> tuple[str, bool]:

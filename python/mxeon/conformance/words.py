@@ -433,7 +433,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.DEFECT: lambda cause: _filled(DEFECTS[cause.key], cause),
     Kind.UNKNOWN: lambda cause: DEFECTS[cause.key],
     Kind.TEXT: lambda cause: cause.text,
-    Kind.CONTROL: lambda cause: "inconclusive: the values are right, but the control passed too",
+    Kind.CONTROL: lambda cause: "inconclusive: the deliberately wrong control passed too",
     # The result's reason already explains causes of these three kinds.
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
