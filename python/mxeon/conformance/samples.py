@@ -126,6 +126,7 @@ class Candidate:
     title: str
     values: Callable[[Batch], Array]
     permitted: bool = False  # whether the specification permits the function
+    anisotropic: bool = False  # whether the function only differs for two different alphas
 
 
 def generator() -> Rng:

@@ -368,7 +368,9 @@ class RowSpec(ValueSpec, Generic[F]):
     def value_candidates(self) -> tuple[Candidate, ...]:
         """Functions that may explain the values: the model, variants of the model, and `others`."""
         variants = (
-            Candidate(each.title, partial(self.values, each.value), each.permitted)
+            Candidate(
+                each.title, partial(self.values, each.value), each.permitted, each.anisotropic
+            )
             for each in self.row.variants
             if each.value
         )

@@ -20,7 +20,6 @@ from mxeon.conformance.specs import lobes, sheen
 from mxeon.conformance.tolerance import Term, Tolerance, roundings, single, sum_in, sum_of
 from mxeon.models import sampling, transmission
 from mxeon.models.microfacet import Lobe, fresnel, node_albedo, uncompensated
-from mxeon.models.microfacet.defects import MEAN_ALPHA
 from mxeon.models.microfacet.ggx import ggx_albedo_dir, smith_g1, smith_g2, smith_g2_anisotropic
 from mxeon.models.nodes import microfacets
 from mxeon.models.nodes.microfacets import FILM_NODES, LOBES, MICROFACET_NODES, TRANSMISSION_NODES
@@ -226,7 +225,7 @@ class FacetSpec(lobes.PbrSpec):
     @property
     def value_candidates(self) -> tuple[samples.Candidate, ...]:
         """The candidates that differ from the model for isotropic lobes."""
-        return tuple(each for each in self.all_candidates if not each.title.startswith(MEAN_ALPHA))
+        return tuple(each for each in self.all_candidates if not each.anisotropic)
 
     @property
     def all_candidates(self) -> tuple[samples.Candidate, ...]:

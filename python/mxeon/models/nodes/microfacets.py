@@ -28,7 +28,9 @@ from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 # facets.
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
-] + ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
+]
+# Deviations that only show for two different alphas; also permitted.
+ANISOTROPIC = ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
 REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 
 
@@ -131,8 +133,9 @@ def _row(
         Variant(
             each.title,
             partial(lobe.value, terms=each.lobe),
-            partial(lobe.albedo, compensate=False) if each.title == UNCOMPENSATED else None,
-            permitted=each.name in OPEN,
+            partial(lobe.albedo, compensate=False) if each.name == "no_compensation" else None,
+            permitted=each.name in (*OPEN, *ANISOTROPIC),
+            anisotropic=each.name in ANISOTROPIC,
         )
         for each in (*defects.MICROFACET_DEFECTS, *defects.FITTED_DEFECTS)
     )
@@ -267,15 +270,15 @@ def _film_variants(row: PbrNode) -> tuple[Variant[Scattering], ...]:
         one = form == MIXED and row.category == "dielectric_bsdf"  # the channels are equal
         if one or (form.share != 1.0 and not schlick):
             continue
-        lobes: list[tuple[str, Lobe | None]] = [(title, None)]
+        lobes: list[tuple[str, Lobe | None, bool]] = [(title, None, False)]
         later = ((", with F averaged from F0 and F90", defects.AVERAGED),) if form == STOCK else ()
         for words, terms in ((", with MaterialX's compensation", defects.FITTED), *later):
-            lobes.append((f"{title}{words}", Lobe(terms.factor)))
+            lobes.append((f"{title}{words}", Lobe(terms.factor), False))
             if form in (STOCK, thin_film.MATERIALX):
-                lobes.append((f"{defects.MEAN_ALPHA}, and {title}{words}", terms))
-        for name, lobe_terms in lobes:
+                lobes.append((f"{defects.MEAN_ALPHA}, and {title}{words}", terms, True))
+        for name, lobe_terms, anisotropic in lobes:
             value = partial(thin_film.film_brdf, row.category, form=form, lobe=lobe_terms)
-            variants.append(Variant(name, value, permitted=permitted))
+            variants.append(Variant(name, value, permitted=permitted, anisotropic=anisotropic))
     return tuple(variants)
 
 
