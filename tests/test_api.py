@@ -86,7 +86,7 @@ def test_an_argument_that_is_refused_names_the_parameter(short):
         "hosts must be a name or path, or several; got 3": {"hosts": 3},
         "each of nodes must be one name or path; got 3": {"nodes": ["mix", 3]},
         "files must be a name or path, or several; got none": {"files": []},
-        "compared must be other libraries than those judged; got 'eonlib'": {"compared": "eonlib"},
+        "compared must differ from the judged libraries; got 'eonlib'": {"compared": "eonlib"},
     }.items():
         with pytest.raises(ValueError, match=f"^{words}$"):
             checked(**names)

@@ -102,7 +102,7 @@ def test_workers_that_do_not_fit_get_no_work_and_are_named(tmp_path):
     assert found == {place: Outcome("yes") for place in range(12)}
     words = " | ".join(str(each.message) for each in said)
     assert f"it must have mxeon {mxeon.__version__}; got 0.0.9" in words
-    assert "it must have one thread, --nthreads 1, as OpenGL needs; got 2" in words
+    assert "it must have one thread, --nthreads 1, because of OpenGL; got 2" in words
 
 
 NOBODY = {"workers": {}}

@@ -258,7 +258,7 @@ def test_a_number_for_roughness_is_isotropic(function, inputs):
         (lambda: mxeon.model("hair").brdf(WO, WI), ValueError, "hair has no brdf: light passes through it, so call bsdf; it has bsdf"),
         (lambda: mxeon.model("eon").brdf(WO, WI, tint=1.0), TypeError, "inputs are color, roughness; got 'tint'"),
         (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, rho=1.0), TypeError, "got 'rho' twice"),
-        (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, 1.0, 1.0), TypeError, "got 3 of them"),
+        (lambda: mxeon.model("eon").brdf(WO, WI, 1.0, 1.0, 1.0), TypeError, "got 3 inputs"),
         (lambda: mxeon.model("qon").brdf(WO, WI, 1.0, 2.0), ValueError, "roughness must lie in [0, pi/2]; got 2.0"),
         (lambda: mxeon.model("eon").brdf(MANY, MANY[:2]), ValueError, "wo has 5 rows, wi has 2 rows; give equal counts, or one"),
     ],

@@ -183,9 +183,7 @@ def use_materialx(folder: str | None) -> None:
     if not os.path.isfile(os.path.join(folder, "MaterialX", "__init__.py")):
         raise InputError(f"{rule}; there is no MaterialX/__init__.py")
     if known := sys.modules.get("MaterialX"):
-        raise InputError(
-            f"{rule}, the first that a process imports; it has imported {known.__file__}"
-        )
+        raise InputError(f"{rule}; this process has already imported {known.__file__}")
     sys.path.insert(0, folder)
     os.environ[MATERIALX] = folder
     try:
@@ -214,7 +212,7 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
         default=[],
         metavar="FOLDER",
         help="also look here for images and includes, after the document's own folder and "
-        f"before those in ${SEARCH_PATH}; repeatable",
+        f"before the folders in ${SEARCH_PATH}; repeatable",
     )
     add_shared(command, "--definitions")
     command.add_argument(

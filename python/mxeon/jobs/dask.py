@@ -100,7 +100,7 @@ class Workers:
         if not self.compatible() and self._compatible:  # these workers will stay incompatible
             raise InputError(
                 f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
-                f"got {len(self._compatible)} others"
+                f"got {len(self._compatible)} other workers"
             )
         self.await_compatible()
 
@@ -129,7 +129,7 @@ class Workers:
             if version != mxeon.__version__:
                 reason = f"it must have mxeon {mxeon.__version__}; got {version}"
             elif threads[address] != 1:
-                needs = "it must have one thread, --nthreads 1, as OpenGL needs"
+                needs = "it must have one thread, --nthreads 1, because of OpenGL"
                 reason = f"{needs}; got {threads[address]}"
             self._compatible[address] = not reason
             if reason:

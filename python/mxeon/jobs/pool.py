@@ -135,7 +135,7 @@ def run(
     try:
         os.getcwd()
     except FileNotFoundError:
-        rule = "working folder must exist, as worker processes start in it"
+        rule = "working folder must exist, because workers start in it"
         raise NotRun(f"{rule}; it was deleted") from None
     workers = min(workers, len(items))
     waiting = Queue([Attempt(index, item, group(item)) for index, item in enumerate(items)])

@@ -78,7 +78,7 @@ def views(mu: ArrayLike, azimuth: ArrayLike) -> Array:
         if np.all(np.abs(length - 1.0) <= arguments.UNIT_TOLERANCE):
             raise ValueError(
                 f"mu must be cosines; got shape {values.shape} of unit length, a direction: pass its z, "
-                "or mu[..., np.newaxis] if they are cosines"
+                "or mu[..., np.newaxis] for cosines"
             )
     xp = array_namespace(cosine, phi)
     sine = arrays.root((1.0 - cosine) * (1.0 + cosine))
@@ -191,7 +191,7 @@ class ShadingModel:
         names = [each.name for each in self.parameters]
         aliases = {each.quantity: each.name for each in self.parameters}
         if len(inputs) > len(names):
-            raise TypeError(f"inputs are {', '.join(names)}; got {len(inputs)} of them")
+            raise TypeError(f"inputs are {', '.join(names)}; got {len(inputs)} inputs")
         values = dict(zip(names, inputs, strict=False))
         for word, value in named.items():
             name = aliases.get(word, word)

@@ -674,7 +674,7 @@ ROWS = (
           applies=DRAWN, measure=pdf,
           tolerance=single(
               MOST_DEVIATIONS, Quantity.DEVIATIONS,
-              "chance reaches 6 once in 10^7 draws of a chi-square"),
+              "a correct sampler reaches 6 once in 10^7 chi-square tests"),
           control=controls.with_values(
               "a tenth of the density is that of a uniform lobe that is never sampled",
               lambda batch, values: 0.9 * values + 0.1 / (4.0 * np.pi)),

@@ -46,7 +46,7 @@ class Quantity(Enum):
     DENSITY = "density", "1/sr, relative above 1"
     DEVIATIONS = "deviations", "standard deviations"
     DRAWN = "drawn", "relative, divided by the lobe's slope"
-    CONDITIONED = "conditioned", "over 1, the value, and its change with each argument"
+    CONDITIONED = "conditioned", "divided by max(1, |value|) plus the slopes in all arguments"
     TOLERANCES = "tolerances", "tolerances"
     # Counts of faults.
     INPUTS = "inputs", "inputs"

@@ -107,7 +107,7 @@ def check(
         documents = documents_in(given)
         judged, others = (tuple(map(library_name, each)) for each in (judged, others))
         if both := [each for each in others if each in judged]:
-            raise InputError(f"compared must be other libraries than those judged; got {both[0]!r}")
+            raise InputError(f"compared must differ from the judged libraries; got {both[0]!r}")
         loaded = tuple(dict.fromkeys((*judged, *others)))
         for library in filter(library_tree.root, loaded):
             for target in {host_row(host).target for host in engines} & {*generation.TARGETS}:

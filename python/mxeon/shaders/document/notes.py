@@ -174,5 +174,5 @@ def _unconnected(element: mx.Element) -> str | None:
     if not element.isA(mx.Input) or not element.getNodeName() or element.getConnectedNode():
         return None
     rule = f"must be connected to a node; got nodename {element.getNodeName()!r}"
-    remedy = "a nodegraph is connected by nodegraph"
+    remedy = "use the attribute nodegraph for a nodegraph"
     return f"{location(element)} {rule}, which MaterialX ignores: {remedy}"

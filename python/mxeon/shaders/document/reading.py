@@ -259,13 +259,13 @@ def _types(document: mx.Document) -> Iterator[str]:
         for member in each.getChildren():
             if member.getAttribute("type") == "filename":
                 yield (
-                    f"{location(each)} must have no member of type filename, as a structure of a "
-                    f"shader holds no image; got {member.getName()}: make it an input"
+                    f"{location(each)} must have no member of type filename, because a shader's "
+                    f"struct cannot hold an image; got {member.getName()}: make it an input"
                 )
         standard = document.getDataLibrary().getTypeDef(each.getName())
         if standard and (members := each.getChildren()):
             yield (
-                f"{location(each)} must have no members, as a type of the libraries; "
+                f"{location(each)} must have no members, because the libraries define it; "
                 f"got {members[0].getName()}: rename the type"
             )
 
