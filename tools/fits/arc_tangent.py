@@ -6,8 +6,8 @@
 The shaders' `oren_nayar_angle` uses the coefficients on [0, tan(pi / 8)] in float32.
 
 The polynomial equals atan(t) / t at the roots of a Chebyshev polynomial in t^2. The coefficients
-are computed with 40 digits. The nearest singularity is the branch point at t^2 = -1, so each
-additional term reduces the error by a factor of 25.
+are computed with 40 digits. The singularity of atan(t) / t next to the interval is at t^2 = -1, so
+each additional term reduces the error by a factor of 25.
 """
 
 from tools.fits.minimax import mp, roots
@@ -17,7 +17,7 @@ DIGITS = 17  # enough to distinguish any two float64 numbers
 
 
 def coefficients(terms, top):
-    """Coefficients for [0, top], lowest power first, as float64."""
+    """Coefficients for t in [0, top], lowest power first, as float64."""
     squares = [top**2 * x for x in roots(terms)]
     powers = mp.matrix([[z**k for k in range(terms)] for z in squares])
     values = mp.matrix([mp.atan(mp.sqrt(z)) / mp.sqrt(z) for z in squares])

@@ -24,9 +24,9 @@ STARTS = {
 
 
 def sampled(count):
-    """Values of t, closely spaced at both ends, and X and Z of the black body for Y = 1."""
+    """Arrays of t, X and Z. Values of t are closely spaced at both ends of the range."""
     low, high = mp.mpf(1000) / HOTTEST, mp.mpf(1000) / COLDEST
-    second = mp.mpf(SECOND) * 10**6  # nm times 1000 K
+    second = mp.mpf(SECOND) * 10**6  # unit: nm times 1000 K
     points, quotients = [low + (high - low) * x for x in roots(count)], []
     for t in points:
         totals = [mp.zero] * 3
@@ -40,7 +40,7 @@ def sampled(count):
 
 
 def fit():
-    """Rounded coefficients of X and Z by name, beginning with the numerator."""
+    """Rounded coefficients of N, then of D, for X and for Z."""
     t, X, Z = sampled(COUNT)
     return {
         name: refined(FORM, (t,), values, np.ones(COUNT), STARTS[name])
@@ -49,7 +49,7 @@ def fit():
 
 
 def largest_errors(coefficients, count=400):
-    """Largest absolute errors of X and Z, at points that the fit did not use."""
+    """Largest absolute errors of X and Z at points that the fit did not use."""
     t, X, Z = sampled(count)
     return {
         name: float(np.abs(FORM.value((t,), coefficients[name]) - values).max())

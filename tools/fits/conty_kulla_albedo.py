@@ -8,8 +8,8 @@ where N and D are polynomials in z and s. At small roughness r, only light near 
 contributes. In this limit, the exponential is sin(theta_h)^(1 / r) for the lowest possible half
 vector, and the quotient s^2 / (mu + s)^3 is proportional to E at mu = 0 and at mu = 1. The fit
 minimizes the largest absolute error of min(E, 1). As in `ggx_albedo.py`, the quadrature only uses
-sums, products, quotients and square roots. Since roughness is 4 / k with integer k, powers are
-products of roots.
+sums, products, quotients and square roots. Roughness is 4 / k with an integer k, so the quadrature
+can compute powers by square roots and products.
 
     python -m tools.fits.conty_kulla_albedo
 """
@@ -32,12 +32,12 @@ EIGHTHS = (
     *(4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 36, 40, 44, 48, 56, 64, 80, 100, 128),
     *(170, 230, 320, 450, 640, 900, 1300, 2000, 3000, 5000, 8000, 13000, 20000, 40000),
 )
-TOP, LEAST = 1.02, 1e-4  # range of albedos in the fit; shaders clamp to 1
-NODES = 20  # quadrature nodes per quarter turn of the azimuth
+TOP, LEAST = 1.02, 1e-4  # largest and smallest albedo in the fit; shaders clamp to 1
+NODES = 20  # quadrature nodes per 90 degrees of azimuth
 
 
 def albedo(mu, eighths):
-    """E by quadrature at roughness 4 / eighths, with an error below 1e-4 max(E, 1).
+    """Integral of f cos at roughness r = 4 / eighths, with an error below 1e-4 max(E, 1).
 
     f cos = (1 + p) sin(theta_h)^(2 p) / (4 pi) mu_i / (mu + mu_i - mu mu_i),  p = 1 / (2 r)
     """
@@ -46,12 +46,11 @@ def albedo(mu, eighths):
     s, s_i = np.sqrt((1.0 - mu) * (1.0 + mu)), np.sqrt((1.0 - mu_i) * (1.0 + mu_i))
     M = mu + mu_i
     total = np.zeros_like(mu)
-    # For x in [0, 1], tan(phi / 2) is x if phi is below a right angle, and 1 / x if phi is
-    # above.
+    # The tangent of phi / 2 is x in [0, 1] if phi < pi / 2, and 1 / x if phi > pi / 2.
     for near, far in ((1.0, x * x), (x * x, 1.0)):
         half = near / (near + far)
         flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half
-        # Square roots and products compute sin(theta_h)^(2 p).
+        # Compute `lobe` = sin(theta_h)^(2 p) by square roots and products.
         base, lobe, power = np.sqrt(np.sqrt(np.sqrt(flat / (flat + M * M)))), 1.0, eighths
         while power:
             if power & 1:
@@ -63,7 +62,7 @@ def albedo(mu, eighths):
 
 
 def variables(mu, roughness):
-    """The variables (z, s) of the fit, s^2 / (mu + s)^3, and the exponent of the exponential."""
+    """Returns (z, s), s^2 / (mu + s)^3, and the exponent -mu^2 / (r (8 - 4 mu^2))."""
     s = np.sqrt(roughness)
     factor = roughness / ((mu + s) * (mu + s) * (mu + s))
     exponent = -mu * mu / (roughness * (8.0 - 4.0 * mu * mu))
@@ -76,7 +75,7 @@ def fitted(mu, roughness, coefficients):
 
 
 def points(count=37):
-    """Cosines, roughnesses and albedos for the fit, where albedos are between `LEAST` and `TOP`."""
+    """Cosines, roughnesses and albedos for the fit. Albedos are between `LEAST` and `TOP`."""
     ends = np.array(extrema(count), float)
     rows = []
     for eighths in EIGHTHS:
@@ -90,7 +89,7 @@ def points(count=37):
 
 
 def fit():
-    """Rounded coefficients, beginning with the numerator."""
+    """Rounded coefficients of N, then of D."""
     mu, roughness, E = points()
     arguments, factor, exponent = variables(mu, roughness)
     factor = factor * np.array([float(mp.exp(mp.mpf(float(x)))) for x in exponent])

@@ -3,14 +3,14 @@
 
     python -m tools.fits.eon_sampling
 
-Two inverse distributions map a random number to a cosine and have no other parameters. The inverse
-distributions have the form x = p + sum(a_k B_k(p)), where p is the root of the random number for
-which x(p) is analytic. Values at p = 0 and 1 are exact for any coefficients. Newton steps, each a
-linear minimax fit, minimize the largest relative error of the density.
+Two inverse cumulative distributions map a random number to x, which is mu or 1 - mu. Both have the
+form x = p + sum(a_k B_k(p)), where p is the power of the random number that makes x(p) analytic.
+All B_k are 0 at p = 0 and at p = 1, so both ends are exact. Newton steps, each a linear minimax
+fit, minimize the largest relative error of the density.
 
-ROOT, which only shaders use, holds the coefficients of a polynomial for y = (K / K(pi / 2))^(2/5),
-which is analytic in m = 1 - cos. Without the polynomial, shaders would need an arc tangent and a
-power, and digits would cancel.
+Only shaders use ROOT. ROOT has the coefficients of a polynomial in m = 1 - cos(theta) for
+y = (K(theta) / K(pi / 2))^(2/5), K(theta) = (theta - sin(theta) cos(theta)) / 2 - sin(theta)^3 / 3.
+Without the polynomial, shaders would need an arc tangent and a power, and digits would cancel.
 """
 
 from tools.fits.fon_loss import closed_form
@@ -26,30 +26,30 @@ UPPER_POWERS = (0, 1, 2, 3, 4, 5)
 
 
 def multiple_density(mu):
-    """Density 2 H(mu) mu / (c1 - c2) of the cosine in EON's part `multiple`."""
+    """Probability density 2 H(mu) mu / (c1 - c2) of mu in EON's part `multiple`."""
     return 2 * closed_form(mu) * mu / LOSS_AVG
 
 
 def upper_density(m):
-    """Density S m / (pi/4 - 1/3) of m = 1 - mu in EON's part `upper` for grazing wo."""
+    """Probability density S m / (pi/4 - 1/3) of m = 1 - mu in EON's part `upper` for grazing wo."""
     return mp.sqrt(m * (2 - m)) * m / UPPER_TOTAL
 
 
 def multiple_basis(t):
-    """Basis functions t w^k with w^2 = 1 - t, and the derivatives with respect to t."""
+    """Values and derivatives of the basis functions t w^k with w = sqrt(1 - t)."""
     w = mp.sqrt(1 - t)
     values = [t * w**k for k in MULTIPLE_POWERS]
     return values, [w**k - k * t * w ** (k - 2) / 2 for k in MULTIPLE_POWERS]
 
 
 def upper_basis(y):
-    """Basis functions (1 - y) y^(1 + k), and the derivatives with respect to y."""
+    """Values and derivatives of the basis functions (1 - y) y^(1 + k)."""
     values = [(1 - y) * y ** (1 + k) for k in UPPER_POWERS]
     return values, [(1 + k) * y**k - (2 + k) * y ** (1 + k) for k in UPPER_POWERS]
 
 
 def density_error(p, basis, density, root, coefficients):
-    """Relative error of the density at x(p), and the gradient of this error."""
+    """Relative error of the density at x(p), and the gradient with respect to the coefficients."""
     values, slopes = basis(p)
     x, slope = p + mp.fdot(values, coefficients), 1 + mp.fdot(slopes, coefficients)
     step = mp.sqrt(mp.eps)
@@ -73,10 +73,9 @@ def fitted(points, basis, density, root):
 
 
 def root_rows(points):
-    """Rows of the linear fit of y / m by powers of m. Each row is divided by y / m.
+    """Rows of the linear fit of y by the powers m to m^6, divided by y for relative errors.
 
-    Here, y is (K / K(pi / 2))^(2/5) at the cosine 1 - m. Cancellation costs at most 14 of 40
-    digits.
+    Cancellation in K costs at most 14 of 40 digits.
     """
     rows = []
     for m in points:
@@ -91,7 +90,7 @@ def dense_near_1(count):
     return [1 - w**2 for w in roots(count)]
 
 
-# A fit's name, points, basis, density, and `root`. The random number is p to the power `root`.
+# Each row has the name, points, basis, density and root of a fit. The random number is p^root.
 ROWS = (
     ("MULTIPLE", dense_near_1, multiple_basis, multiple_density, mp.mpf(3)),
     ("UPPER", roots, upper_basis, upper_density, mp.mpf(5) / 2),

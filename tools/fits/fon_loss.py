@@ -57,7 +57,7 @@ def fit(degree_p=DEGREE_P, degree_q=DEGREE_Q):
 
 
 def largest_errors(p, q):
-    """Largest relative errors of H over `CHECKED`, in float64 and in simulated float32."""
+    """Largest relative errors of H at `CHECKED`, in float64 and in simulated float32."""
     exact = formulas.fon_loss_mu(np.float64(CHECKED))
     double = fitted(np.float64(CHECKED), p, q)
     single = fitted(CHECKED, np.float32(p), np.float32(q))

@@ -5,8 +5,8 @@ For a dielectric with an IOR n above 1, the fit uses t = 1 / n:
 
     1 - F_ss = t N / D,
 
-where N and D are polynomials in t. For an IOR below 1, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). A metal
-reflects everything at grazing, so the fit is a sum over three cosines c_k:
+where N and D are polynomials in t. For an IOR below 1, 1 - F_ss(n) = n^2 (1 - F_ss(1 / n)). The fit
+for metals is a sum over three cosines c_k:
 
     1 - F_ss = sum of w_k (1 - F(c_k)),
 
@@ -31,7 +31,7 @@ STEPS = 12  # number of linear fits; more fits change no printed digit
 COSINES = (0.22, 0.58, 0.9)
 INDICES = (*(float(mp.mpf(5) ** (mp.mpf(k) / 6 - 1) / 4) for k in range(12)), 5.0)
 EXTINCTIONS = (0.5, 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)
-NODES = 24  # nodes of the average over the hemisphere
+NODES = 24  # quadrature nodes of the average over the hemisphere
 
 
 def dielectric_average(n):
@@ -76,7 +76,7 @@ def dielectric_error(coefficients):
 
 
 def metals(n, k):
-    """F_ss of metals by quadrature, to within 1e-6, and reflectances of the metals at COSINES."""
+    """F_ss of metals, with errors below 1e-6, and the metals' reflectances at COSINES, (N, 3)."""
     n, k = (each.ravel() for each in np.meshgrid(n, k, indexing="ij"))
 
     def at(c):
@@ -87,7 +87,7 @@ def metals(n, k):
 
 
 def conductor_error(weights, n, k):
-    """Largest absolute error of F_ss of metals as a sum over three cosines."""
+    """Largest absolute error of metals' F_ss if computed as a sum over three cosines."""
     exact, at = metals(n, k)
     return float(np.abs(1.0 - (1.0 - at) @ weights - exact).max())
 
@@ -111,6 +111,6 @@ if __name__ == "__main__":
     print(f"largest absolute error, dielectrics: {dielectric_error(found):.3g}")
     weights = conductor_fit()
     print("metals", *printed(weights))
-    for least in (0.5, 0.2):  # least extinction of the fit, and an extinction outside the fit
+    for least in (0.5, 0.2):  # 0.2 is outside the range of the fit
         error = conductor_error(weights, np.linspace(0.05, 5.0, 200), np.linspace(least, 10.0, 200))
         print(f"largest absolute error, metals of an extinction from {least}: {error:.3g}")

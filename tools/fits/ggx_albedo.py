@@ -4,9 +4,10 @@
     E_ss(mu, alpha) = 1 - z^2 N / D,  z = sqrt(mu / (mu + alpha)),
 
 where N and D are polynomials in z and alpha. At small alpha, E_ss only depends on mu / alpha, and
-hence on z. At grazing, 1 - E_ss vanishes like mu log(mu), which polynomials in z approximate better
-than polynomials in mu. The fit minimizes the largest absolute error. The quadrature only uses sums,
-products, quotients and square roots of float64, whose results are the same on every processor.
+hence on z. Near mu = 0, 1 - E_ss vanishes like mu log(mu), so polynomials in z approximate 1 - E_ss
+better than polynomials in mu. The fit minimizes the largest absolute error. The quadrature only
+uses sums, products, quotients and square roots in float64, because every processor computes the
+same results for these operations.
 
     python -m tools.fits.ggx_albedo
 """
@@ -51,7 +52,7 @@ def legendre(count):
 
 
 def graded():
-    """Nodes and weights of panels on [0, 1]. Each panel is about a quarter as wide as the next."""
+    """Quadrature nodes and weights on [0, 1], in panels whose ends are 0 and powers of 1/4."""
     x, w = legendre(DEGREE)
     pairs = list(pairwise([0.0] + [4.0 ** (k - PANELS + 1) for k in range(PANELS)]))
     nodes = np.concatenate([a + (b - a) * x for a, b in pairs])
@@ -59,11 +60,11 @@ def graded():
 
 
 def incident(mu, alpha):
-    """Terms of the albedo's integrand for nodes around the mirror direction, along the first axis.
+    """Terms of the albedo's integrand at nodes of tan((theta_o - theta_i) / 2), on the first axis.
 
-    Let t be tan((theta_o - theta_i) / 2). As a function of the azimuth, D G2 / (4 mu_o) is pre (u /
-    (u - k))^2, where u - k rises from `low` at the azimuth of the mirror direction to `high` at the
-    opposite azimuth. Returns k, `low`, `high` and `pre`.
+    As a function of the azimuth, D G2 / (4 mu_o) is pre (u / (u - k))^2, where u - k rises from
+    `low` at the azimuth of the mirror direction to `high` at the opposite azimuth. Returns k,
+    `low`, `high` and `pre`.
     """
     node, weight = (each.reshape(-1, *(1,) * np.ndim(mu)) for each in graded())
     s = np.sqrt((1.0 - mu) * (1.0 + mu))
@@ -91,7 +92,7 @@ def albedo(mu, alpha):
 
 
 def variables(mu, alpha):
-    """The variables (z, alpha) of the fit, and the factor z^2."""
+    """The variables (z, alpha) and the factor z^2 of the fit."""
     z2 = mu / (mu + alpha)
     return (np.sqrt(z2), alpha), z2
 
@@ -102,9 +103,9 @@ def fitted(mu, alpha, coefficients):
 
 
 def points(across=61, along=41, root=0.0, least=LEAST):
-    """Cosines and roughnesses, with many points where alpha or x is near 0 or 1.
+    """Grid of alpha and x = mu / sqrt(alpha^2 + (1 - alpha^2) mu^2), returned as mu and alpha.
 
-    Here, x is mu / sqrt(alpha^2 + (1 - alpha^2) mu^2). A `root` of 1/2 adds points near alpha = 0.
+    Points are closely spaced near 0 and 1. A positive `root` moves points towards alpha = 0.
     """
     x, alpha = (np.array(extrema(count), float) for count in (across, along))
     x, alpha = np.meshgrid(np.maximum(x, least), np.maximum(alpha * alpha**root, LEAST))
@@ -113,7 +114,7 @@ def points(across=61, along=41, root=0.0, least=LEAST):
 
 
 def fit():
-    """Rounded coefficients, beginning with the numerator."""
+    """Rounded coefficients of N, then of D."""
     mu, alpha = points()
     arguments, z2 = variables(mu, alpha)
     return refined(FORM, arguments, (1.0 - albedo(mu, alpha)) / z2, z2, START)
@@ -126,7 +127,7 @@ def largest_error(coefficients, across=145, along=97):
 
 
 def peak(mu, alpha, count=400):
-    """Largest pi f cos of perfectly reflecting facets, which occurs in the plane of incidence."""
+    """Largest pi f cos of perfectly reflecting facets. The maximum is in the plane of incidence."""
     mu_i = (np.arange(count) + 0.5).reshape(-1, *(1,) * np.ndim(mu)) / count
     s, s_i = (np.sqrt((1.0 - each) * (1.0 + each)) for each in (mu, mu_i))
     alpha2 = alpha * alpha
@@ -137,10 +138,10 @@ def peak(mu, alpha, count=400):
 
 
 def value_errors(coefficients, across=145, along=97):
-    """Largest error of a compensated value, and the largest factor of F_ss in such a value.
+    """Largest error of a compensated value v / E_ss, and largest factor v (1 - E_ss) / E_ss.
 
-    If the value exceeds 1, the error and the factor are relative. If v is the value without
-    compensation, the compensated value is v / E_ss, and the factor of F_ss is v (1 - E_ss) / E_ss.
+    The factor multiplies F_ss. Errors of values above 1 are relative. If v exceeds 1, the factor is
+    divided by v.
     """
     mu, alpha = points(across, along)
     E, v = albedo(mu, alpha), peak(mu, alpha)

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Isotropic facets that replace anisotropic facets in shaders' fits of E_ss and Fresnel averages.
 
-With r^2 = (alpha_x^2 + alpha_y^2) / 2, the squared roughnesses along and across the azimuth of wo
-are
+Let wo be (x, y, z), and let r^2 be (alpha_x^2 + alpha_y^2) / 2. The squared roughnesses along and
+across the azimuth of wo are
 
     v^2 = (alpha_x x)^2 + (alpha_y y)^2 + (r z)^2,  u^2 = 2 r^2 - v^2.
 
-The slopes along and across that azimuth have the correlation c, c^2 = 1 - (alpha_x alpha_y)^2 / (u
-v)^2. Anisotropic facets have the loss 1 - E_ss of isotropic facets with alpha = r at the cosine z r
-/ v, times
+The correlation c of the slopes along and across the azimuth of wo is defined by
+c^2 = 1 - (alpha_x alpha_y)^2 / (u v)^2. The loss 1 - E_ss of anisotropic facets is the loss of
+isotropic facets with alpha = r at the cosine z r / v, multiplied by
 
     1 + C_0 c^2 + C_1 d + C_2 t + C_3 c^2 t,  d = 1 - (alpha_x alpha_y)^2 / r^4,  t = v^2 / r^2 - 1,
 
-where the coefficients minimize the largest relative error of E_ss. The average of a Fresnel curve
-equals the average over isotropic facets with alpha = v k(0.7 + c^2) at the cosine z k(0.35 c^2),
-where k(p) = min((1 + p v) / (1 + p u), 1).
+where the coefficients minimize the largest relative error of E_ss. A Fresnel curve is averaged over
+isotropic facets with alpha = v k(0.7 + c^2) at the cosine z k(0.35 c^2), where
+k(p) = min((1 + p v) / (1 + p u), 1).
 
     python -m tools.fits.ggx_anisotropic
 """
@@ -28,7 +28,7 @@ from tools.fits.ggx_albedo import fitted
 from tools.fits.minimax import shipped
 
 MISSED = (-0.1268, 0.074, -0.0792, 0.0696)  # the shader's C_0 to C_3
-# Grid of the fit: the larger alpha, the ratio of both alphas, the cosine of wo, the azimuth of wo.
+# Grid of the fit: the larger alpha, the ratio of both alphas, and the cosine and azimuth of wo.
 LARGEST = (1.0, 0.6, 0.3, 0.1, 0.05)
 RATIOS = (1.3, 2.0, 3.0, 4.0, 8.0, 16.0, 30.0, 50.0)
 COSINES = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.35, 0.5, 0.7, 0.9, 0.99)
@@ -36,7 +36,7 @@ AZIMUTHS = np.radians((0.0, 5.0, 12.0, 25.0, 45.0, 65.0, 80.0, 90.0))
 
 
 def points(ratios=RATIOS):
-    """Directions (3, N) and alphas (2, N) of a grid, with alphas of at least 1e-3."""
+    """Grid of directions, (3, N), and of alphas of at least 1e-3, (2, N)."""
     a, ratio, mu, phi = (
         each.ravel() for each in np.meshgrid(LARGEST, ratios, COSINES, AZIMUTHS, indexing="ij")
     )
@@ -57,7 +57,7 @@ def exact(wo, alpha, ior=None, block=64):
 
 
 def terms(wo, alpha):
-    """Cosine and alpha of the isotropic facets, and the factors c^2, d, t and c^2 t."""
+    """Cosine and alpha of the isotropic facets for E_ss, and the terms c^2, d, t and c^2 t."""
     (x2, y2, z2), (a2, b2) = wo**2, alpha**2
     r2 = 0.5 * (a2 + b2)
     v2 = a2 * x2 + b2 * y2 + r2 * z2

@@ -11,8 +11,8 @@ identifies the Fresnel curve. The coefficients minimize the largest error of the
 Among Schlick's curves (1 - c)^q, exponent 5 has twice the weight of other exponents.
 
 Hoffman's dip c (1 - c)^6 is not monotone, so the average of the dip is fitted instead of a cosine.
-If c is the cosine for Schlick's curve of exponent 5, the average is c
-(1 - c)^6 + alpha^2 / (mu + alpha) N / D, where N and D are polynomials in mu and sqrt(alpha).
+If c is the cosine for Schlick's curve of exponent 5, the fitted average is
+c (1 - c)^6 + alpha^2 / (mu + alpha) N / D, where N and D are polynomials in mu and sqrt(alpha).
 
 The quadrature only uses sums, products, quotients and square roots, as in `ggx_albedo.py`.
 
@@ -31,12 +31,12 @@ from tools.fits.minimax import Form, mp, numerator, printed
 
 BLOCK = 20
 BISECTIONS = 50
-FLAT = 0.01  # lower limit of the slopes that weights use
-DEGREE, OUTER = 8, 12  # quadrature nodes in each panel, and outside the panels
+FLAT = 0.01  # lower limit of a curve's slope in the weights
+DEGREE, OUTER = 8, 12  # number of quadrature nodes in each panel and outside the panels
 
 
 def dielectric(c, ior):
-    """Fresnel reflectance at an index of refraction above 1."""
+    """Fresnel reflectance of a dielectric with an IOR above 1."""
     g = np.sqrt(ior * ior - 1.0 + c * c)
     s, p = (c - g) / (c + g), (ior * ior * c - g) / (ior * ior * c + g)
     return 0.5 * (s * s + p * p)
@@ -55,7 +55,7 @@ def dip(c):
 
 @dataclass(frozen=True)
 class Curves:
-    """A kind of Fresnel curves, and the fit of the cosine c for this kind."""
+    """A family of Fresnel curves, and the fit of the cosine c for the family."""
 
     function: str  # name of the shader function that computes c
     reflectance: Callable
@@ -72,7 +72,7 @@ class Curves:
 
 
 def below(total, count):
-    """Exponents of all monomials in `count` variables up to a total degree."""
+    """Exponents of all monomials in `count` variables up to the degree `total`."""
     return tuple(m for m in product(range(total + 1), repeat=count) if sum(m) <= total)
 
 
@@ -118,7 +118,7 @@ def points(across=43, along=25):
 
 
 def averages(mu, alpha, functions):
-    """E_ss, and the averages of `functions` of the cosine over the visible facets."""
+    """E_ss, and the average of each function of the cosine over the visible facets."""
     blocks = [
         integrals(mu[i : i + BLOCK], alpha[i : i + BLOCK], functions)
         for i in range(0, len(mu), BLOCK)
@@ -128,10 +128,9 @@ def averages(mu, alpha, functions):
 
 
 def azimuths(scale):
-    """Nodes and weights along axis 1, in panels of [0, 1] whose ends are powers k / 8 of `scale`.
+    """Quadrature nodes and weights on [0, 1], in panels with ends at 0 and scale^(k / 8).
 
-    Beyond the first panel, the reciprocals of nodes follow Gauss's rule, which suits the tail of a
-    peak at 0.
+    In all panels but the first, Gauss's rule applies to 1 / x, which suits the tail of a peak at 0.
     """
     x, w = (each[None, :, None] for each in legendre(DEGREE))
     root = np.sqrt(np.sqrt(np.sqrt(scale)))
@@ -147,7 +146,7 @@ def azimuths(scale):
 
 
 def integrals(mu, alpha, functions):
-    """E_ss, and the integrals of `functions` of the cosine over visible facets."""
+    """E_ss, and the integral of each function of the cosine over the visible facets."""
     k, low, high, pre = (each[:, None] for each in incident(mu, alpha))
     tangent, width = azimuths(np.sqrt(low / high))
     shape = (len(low), OUTER, low.shape[-1])
@@ -173,7 +172,7 @@ def inverse(values, reflectance):
 
 
 def variables(curves, mu, alpha, shape):
-    """The variables (x, y, s) of the fit, and the factor alpha^2 / (mu + alpha)."""
+    """The variables (x, y, s) and the factor alpha^2 / (mu + alpha) of the fit."""
     y = alpha
     for _ in range(curves.roots):
         y = np.sqrt(y)
@@ -208,7 +207,7 @@ def sample(curves, mu, alpha):
 
 
 def fit(curves):
-    """Rounded coefficients, beginning with the numerator."""
+    """Rounded coefficients of N, then of D."""
     return numerator(curves.form, *sample(curves, *points()), curves.below)
 
 
@@ -241,7 +240,7 @@ if __name__ == "__main__":
         largest = errors(curves, found, *points(49, 33))
         for n, error in zip(curves.parameters, largest, strict=True):
             print(f"largest absolute error at {n}: {error:.3g}")
-    # The fit of the dip uses the cosine for Schlick's curves, whose coefficients are in `found`.
+    # The fit of the dip needs the coefficients for Schlick's curves, which `found` now has.
     dip_found = numerator(DIP_FORM, *dip_sample(*points(41, 29), found), DIP_BELOW)
     print("ggx_dip", *printed(dip_found))
     arguments, value, weight = dip_sample(*points(49, 33), found)

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of the light that GGX facets transmit into a thinner medium, with an index n below 1.
+"""Fit of the light that GGX facets transmit into a medium with a relative IOR n below 1.
 
 Facets beyond the critical angle reflect everything, so no single cosine can represent all facets.
-Let tau be the cotangent of the angle between view and facet, and let tau_c be tau at the critical
-angle, so that tau_c^2 = (1 - n^2) / n^2. The share of facets below the critical angle is
+Let tau be the cotangent of the angle between wo and the normal of a facet, and let tau_c be tau at
+the critical angle: tau_c^2 = (1 - n^2) / n^2. The fraction of facets below the critical angle is
 
     S = (1 + v / sqrt(1 + v^2)) / 2,  v = k (tau_m / tau_c - tau_c / tau_m),
 
-and the share of transmitted light is S^p (1 - F). F is the reflectance at a value of tau that a
+and the fraction of transmitted light is S^p (1 - F). F is the reflectance at a value of tau that a
 fraction Q of the facets exceeds. Q is proportional to S, and the distribution of S determines tau:
 
     k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),
     2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.
 
-Along the normal, the exact share 1 / (1 + alpha^2 tau_c^2) of GGX is S with k = 1/2. For a smooth
-surface, S with 2 k = mu s / alpha is the distribution of GGX's slopes in one direction. With the
-cosine mu and the sine s of the view's polar angle, the fit is
+Let mu and s be the cosine and the sine of the polar angle of wo. If mu = 1, the fraction of facets
+is exactly 1 / (1 + alpha^2 tau_c^2), which equals S with k = 1/2. For small alpha, S with
+2 k = mu s / alpha is the cumulative distribution of GGX's slopes along one axis. The fit is
 
     tau_m^2 = (mu^2 + a alpha^2) / (s^2 + b alpha^2),  k^2 = k_0 + k_1 mu^2 s^2 / alpha^2.
 
@@ -23,12 +23,11 @@ Each of a, b, k_0, p and Q / S is a sum of fitted terms, or the exponential of a
 search chose the terms among products of mu, x = mu / (mu + alpha), y = sqrt(alpha), z = s / (s +
 alpha) and n.
 
-The share of light that follows reversed paths from outside (`mxeon.models.transmission`) has the
-same form with other coefficients, divided by 1 + r alpha (1 - n^2) / mu. The divisor accounts for
-light at grazing that facets reflect back up.
+The fraction of light that follows reversed paths from outside (`mxeon.models.transmission`) has the
+same form with other coefficients, divided by 1 + r alpha (1 - n^2) / mu with a fitted r.
 
-The fit minimizes the largest errors of the compensated albedo and of the share by reversed paths.
-The search runs in float64, so coefficients may differ slightly between machines.
+The fit minimizes the largest errors of the compensated albedo and of the fraction of light on
+reversed paths. The search runs in float64, so coefficients may differ slightly between machines.
 
     python -m tools.fits.ggx_inside
 """
@@ -45,12 +44,12 @@ from mxeon.shaders.functions import source_file
 SEED, COUNT = 5, 2500
 LEAST = 1e-4  # smallest cosine and roughness
 INDICES = (0.33, 0.4, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.93, 0.95, 0.98)
-POWERS = (4, 8, 16)  # half the exponents of successive p-norms, which approximate the largest error
+POWERS = (4, 8, 16)  # half the exponents of p-norms; large exponents approximate the largest error
 SCALE = 30.0  # scales errors to about 1
 
 
 def points(seed=SEED, count=COUNT):
-    """Random cosines and roughnesses, often near the normal, a critical angle, or mu = alpha."""
+    """Random mu and alpha. Many mu are near 1, near alpha, or near a critical angle's cosine."""
     rng = np.random.default_rng(seed)
     pick, ratio = rng.random((3, count)), rng.random(count)
     alpha = np.where(pick[0] < 0.5, LEAST ** rng.random(count), rng.random(count))
@@ -72,7 +71,7 @@ def albedo(mu, alpha, ior):
 
 
 def passing(mu, alpha, ior, c):
-    """Fitted mean of 1 - F over visible facets, and fitted share of light by reversed paths."""
+    """Fitted mean of 1 - F over visible facets, and fitted fraction of light on reversed paths."""
     s2, bent = 1.0 - mu * mu, 1.0 - ior * ior
     x, y, z = mu / (mu + alpha), np.sqrt(alpha), np.sqrt(s2) / (np.sqrt(s2) + alpha)
     ratio = mu * mu * s2 / alpha**2
@@ -109,7 +108,7 @@ def passing(mu, alpha, ior, c):
 
 
 def passed(mu, alpha, ior):
-    """Exact shares of light that follows reversed paths."""
+    """Exact fractions of light on reversed paths."""
 
     def outside(a, n):
         return lambda mu: dielectric_albedo_dir(view(mu), 1.0, [a, a], 1.0 / n)
@@ -126,14 +125,14 @@ def sample(mu, alpha):
 
 
 def errors(coefficients, mu, alpha, ess, albedos):
-    """Errors of the compensated albedo, (I, N), by IOR and view."""
+    """Errors of the compensated albedo for each IOR and each mu, (I, N)."""
     fitted = np.stack([1.0 - passing(mu, alpha, n, coefficients)[0] for n in INDICES])
     average = np.array([float(fresnel_dielectric_avg(n)) for n in INDICES])[:, np.newaxis]
     return (ess * fitted - albedos) * (1.0 + average * (1.0 - ess) / ess)
 
 
 def fit(mu, alpha, ior, sampled, exact):
-    """Fit the coefficients to `sampled` albedos and `exact` shares by reversed paths."""
+    """Fit coefficients to `sampled` albedos and `exact` fractions of light on reversed paths."""
 
     def powers(coefficients, power):
         share = passing(mu, alpha, ior, coefficients)[1] - exact

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of sums over a uniform environment, for several sets of points.
 
-A lobe's albedo is the mean of F G2 / G1 over directions that are sampled by visible facets. A white
-lobe's albedo is divided by E_ss for compensation. MaterialX uses a Fibonacci lattice, but permits
-other point sets of low discrepancy. Errors are proportional to 1 / n, so the script prints n times
-the largest error.
+A lobe's albedo is the mean of F G2 / G1 over incident directions, which are sampled from visible
+normals. Energy compensation divides a white lobe's albedo by E_ss. MaterialX uses a Fibonacci
+lattice, but permits other point sets of low discrepancy. Errors with n points are proportional to
+1 / n, so the script prints n times the largest error.
 
     python -m tools.fits.lattices
 """
@@ -25,7 +25,7 @@ def fibonacci(count):
 
 
 def r2(count):
-    """Roberts' R2 points: multiples of 1 / x and of 1 / x^2, modulo 1, with x^3 = x + 1."""
+    """Roberts' R2 points: multiples of 1 / x and of 1 / x^2, modulo 1, where x^3 = x + 1."""
     steps = 1.3247179572447460 ** -np.arange(1.0, 3.0)
     return tuple((0.5 + np.arange(1, count + 1) * step) % 1.0 for step in steps)
 

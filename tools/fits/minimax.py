@@ -2,9 +2,9 @@
 """Linear and rational minimax fits in 40 digits, whose results are the same on every machine.
 
 For N unknowns, the minimax residual over many rows equals the minimax residual over some N + 1
-rows, called the reference. Stiefel's exchange replaces rows of the reference, which raises the
-residual of the reference, until no row has a larger residual than the reference. The exchange is
-the simplex method on the dual linear program.
+rows, called the reference. Stiefel's exchange algorithm replaces rows of the reference until no row
+has a larger residual than the reference. Each replacement raises the residual of the reference. The
+algorithm is the simplex method on the dual linear program.
 
 A rational fit is N / D with D = 1 + ..., where N and D are sums of given monomials. A search in
 float64 finds starting coefficients or a denominator without zeros. Linear fits in 40 digits then
@@ -29,7 +29,7 @@ STEPS = 2  # Newton steps from coefficients with six digits; a third step change
 
 
 def least_largest(rows, right):
-    """Minimax solution x of rows @ x = right and its residual, for rows of shape (M, N) with M > N.
+    """Minimax solution x of rows @ x = right, and the largest residual. Rows are (M, N), M > N.
 
     Any N of the starting rows must be independent. Raises ArithmeticError if the exchange does not
     converge.
@@ -85,7 +85,7 @@ class Form:
     below: tuple  # monomials of the denominator, except the constant 1
 
     def value(self, variables, coefficients):
-        """Values of N / D at arrays of variables. Coefficients begin with the coefficients of N."""
+        """Values of N / D. Coefficients of N precede coefficients of D."""
         monomials, count = (*self.above, *self.below), len(self.above)
         terms = [c * _monomial(variables, m) for c, m in zip(coefficients, monomials, strict=True)]
         return sum(terms[:count]) / (1.0 + sum(terms[count:]))
@@ -96,7 +96,7 @@ def _monomial(point, exponents):
 
 
 def _samples(form, variables, values, weights):
-    """Yield monomials of N, monomials of D, a value and a weight in 40 digits for each point."""
+    """Yield for each point the monomials of N and of D, the value and the weight, in 40 digits."""
     for columns in zip(*variables, values, weights, strict=True):
         *point, value, weight = map(mp.mpf, columns)
         above, below = (
@@ -123,7 +123,7 @@ def refined(form, variables, values, weights, start):
 
 
 def numerator(form, variables, values, weights, below):
-    """Minimax coefficients of N for the coefficients `below` of D, followed by `below`."""
+    """Minimax coefficients of N, followed by the given coefficients `below` of D."""
     rows, right = [], []
     for above, monomials, value, weight in _samples(form, variables, values, weights):
         factor = weight / (1 + mp.fdot(monomials, below))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of surface shaders due to the fits of eonlib's lobes.
+"""Errors of surface shaders due to the fits of lobes' albedos.
 
     python -m tools.fits.surface_shaders
 
 The layer equation needs the albedo of each lobe. The reference computes albedos by quadrature, and
-eonlib uses fits. The script evaluates surfaces by quadratures and by fits, in float64, for random
-directions and materials, drawn with other seeds than in the checks. The script prints the largest
-errors of values, of albedos, and of means over a set, due to all fits together.
+eonlib uses fits. The script evaluates surfaces with quadrature and with all fits, in float64, for
+random directions and materials that differ from the samples of the checks. The script prints the
+largest errors of values, of albedos, and of means over a set.
 """
 
 from contextlib import ExitStack, contextmanager, suppress
@@ -37,7 +37,7 @@ WEIGHTS, COSINES = fresnel_average.shipped_conductor()
 
 
 def facets(wo, roughness):
-    """Views (3, N) and alphas (2, N), clamped to the range of the shaders' fits."""
+    """Directions, (3, N), and alphas, (2, N), clamped to the range of the shaders' fits."""
     alpha = np.broadcast_to(np.maximum(roughness, LEAST), (2, wo.shape[1]))
     return np.stack([*wo[:2], np.maximum(wo[2], LEAST)]), alpha
 
@@ -63,7 +63,7 @@ def conductor_average(ior, extinction):
 
 
 def lobe_albedo(points, exact, node, wo, inputs):
-    """Albedo of a lobe: by the shader's fit if the lobe can be a top layer, otherwise exact."""
+    """The fitted albedo of a lobe that can be a top layer, or the exact albedo of another lobe."""
     fit = LAYERED.get(node.name)
     if fit is None or exact is not node.albedo:
         return EXACT(points, exact, node, wo, inputs)
@@ -126,7 +126,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """Largest errors of values and albedos in a random set, and errors of means, by name."""
+    """By name, the largest errors of values and albedos in a random set, and errors of means."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)
@@ -153,7 +153,7 @@ def errors(shader, seed):
 
 
 def largest(shader):
-    """Largest errors by name, over random sets except sets that the layer equation excludes."""
+    """Largest errors of random sets, by name. Sets that the layer equation excludes are skipped."""
     found, seeds = [], count(SEED.get() + 1)
     while len(found) < SETS:
         with suppress(OutsideModel):

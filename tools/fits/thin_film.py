@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of `genglsl/lib/thin_film.glsl`, compared with all orders and exact averages.
+"""Errors of `genglsl/lib/thin_film.glsl`, compared with all interference orders and exact averages.
 
     python -m tools.fits.thin_film
 
-The shader omits negligible orders of interference. Averages over the hemisphere and over visible
-facets are sums over three cosines. Each cosine represents a range of cosines, within which fringes
-partly cancel. The script prints the largest errors for cosines of at least 0.1 and for films of up
-to 1000 nm on each kind of substrate.
+The shader omits negligible orders, and averages over the hemisphere or over visible facets by a sum
+over three cosines. Each cosine represents a range of cosines in which fringes partly cancel. The
+script prints the largest errors for cosines of at least 0.1 and for films of up to 1000 nm on each
+kind of substrate.
 
 A check measures the root mean square error of a set of random films. The tolerance of the check is
-the largest root mean square error of other random sets, which is at most a third of the largest
-error of a single film. So the check detects a wrong digit, which affects all films, even if the
-wrong digit changes each film by less than the largest error of a film.
+the largest root mean square error of other random sets, and is at most a third of the largest error of
+a film. So the check can detect a digit that changes every film by less than the largest error.
 """
 
 import numpy as np
@@ -25,12 +24,12 @@ from mxeon.models import thin_film as film
 from mxeon.models.microfacet.ggx import ggx_albedo_dir
 from mxeon.models.thin_film import SUBSTRATES, TEXT, film_albedo_dir, film_curve
 
-# Ranges of roughness, cosine of the view, thickness in nm, and IOR.
+# Ranges of alpha, of the cosine of wo, and of the thickness in nm and the IOR of a film.
 FILMS = {"alpha": (1e-2, 1.0), "mu": (0.1, 1.0), "thickness": (0.0, 1000.0), "index": (1.0, 2.5)}
 BARE = FILMS | {"thickness": (0.0, 0.0), "index": (1.0, 1.0)}
 VISIBLE = FILMS | {"index": (LEAST_FILM, 2.5)}
 CLEAR = dict(alpha=SHARP.alpha, mu=SHARP.mu, thickness=SHARP.thickness, index=(LEAST_OIL, 2.5))
-DARK = 1e-3  # errors of reflectances below DARK are divided by DARK
+DARK = 1e-3  # lower limit of the divisor of relative errors
 STEP = 1e-6  # relative change of the thickness for difference quotients
 # The shader's constants, fitted by `thin_film_nodes.py`. NODES has the cosines, the weights and the
 # widths of the nodes for F_ss. FACETS has the coefficients of the polynomials in `facets`.
@@ -45,23 +44,22 @@ FACETS = (
     (0.32298, 3.3428, -4.255, 0.51298, 3.6133, -7.43, 3.3391, -2.597, 3.5172, -0.34239),
     (0.14542, 0.030955, -0.22576, -0.22374, 1.0328, -1.4779, 0.16285, -1.7185, 2.1385, 0.018052),
 )  # fmt: skip
-# An order is summed if the square of the order exceeds VALUE_ORDER times the squared mean
-# reflectances of all channels, and exceeds WIDTH_ORDER times the squared width of a node. The
-# square of an order is assumed to be at most ORDER_RATIO times the square of the previous order.
+# The shader sums an interference order if the order's squared amplitude exceeds both VALUE_ORDER
+# times the sum of squared mean reflectances and WIDTH_ORDER times the squared width of a node. From
+# order to order, squared amplitudes are assumed to change by a factor of at most ORDER_RATIO.
 VALUE_ORDER, WIDTH_ORDER, ORDER_RATIO = 8e-14, 1e-3, 0.6
 NARROWEST = min(film.GAUSSIANS, key=lambda gaussian: gaussian[3])
 LEAST_PATH = 1e-21  # m
 LEAST_LOSS = 1e-12
 SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # COUNT films per step of the search
 WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of films to vary, and sizes of the steps
-NUMBERS = 10  # numbers that describe a film, its substrate and its view
+NUMBERS = 10  # numbers that describe a film, the substrate, alpha and the cosine of wo
 COLORED = 17  # NUMBERS, plus 7 for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
-MOVED = 0.3  # share of the COLORED numbers that change in a step
+MOVED = 0.3  # fraction of the COLORED numbers that change in a step
 LEAST = 1e-3  # lower limit of a film's numbers, except roughness, cosine and extinction
-# Films of 1000 nm with the largest errors that longer searches found, but that random starts miss.
-# The first film is on glass, seen at grazing. The second film is on a metal, with total reflection
-# inside the film.
+# Films of 1000 nm with large errors, which longer searches found and random starts miss. GLASS is a
+# film on glass at a grazing angle. The film on a metal has total reflection inside the film.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
 CORNERS = {
     "dielectric_bsdf": GLASS,
@@ -72,7 +70,7 @@ WHITE = {"color82": 1.0, "color90": 1.0}
 
 
 def shader_curve(category, material, mu, width=0.0):
-    """Mean of a film's curve over cosines near mu with standard deviation `width`, as in GLSL."""
+    """The shader's mean reflectance over cosines with mean mu and standard deviation `width`."""
     films = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     mu, thickness, n = np.broadcast_arrays(mu, *films)
     opd = film.path_difference(mu, thickness, n)
@@ -97,12 +95,12 @@ def shader_curve(category, material, mu, width=0.0):
 
 
 def substrate(material):
-    """Inputs of the substrate, without the film and the tint."""
+    """A node's inputs except the film and the tint."""
     return {k: v for k, v in material.items() if k != "tint" and not k.startswith("thinfilm")}
 
 
 def counted_orders(z, opd, spread, count):
-    """Sum of the first `count` orders by tristimulus, shape (3, ...).
+    """Sums of the first `count` interference orders for X, Y and Z, (3, ...).
 
     `spread`, the standard deviation of the path differences in m, damps the fringes.
     """
@@ -119,7 +117,7 @@ def counted_orders(z, opd, spread, count):
 
 
 def decay(mu, var, opd, spread):
-    """Exponent by which a Gaussian sensitivity and a spread of paths damp the first order."""
+    """Decay exponent of the first order for a Gaussian sensitivity and a spread of paths."""
     return var * (2.0 * np.pi * opd) ** 2 + 0.25 * (2.0 * np.pi * mu * spread) ** 4
 
 
@@ -140,7 +138,7 @@ def order_count(weights, sizes, opd, spread, least):
 
 
 def orders_errors(category, material, alpha, mu):
-    """Errors of the sum of orders, divided by max(DARK, largest channel)."""
+    """`curve_errors` divided by max(DARK, largest channel of the exact reflectance)."""
     largest = film_curve(category).at(mu, **material).max(axis=0)
     return curve_errors(category, material, alpha, mu) / np.maximum(largest, DARK)
 
@@ -151,8 +149,7 @@ def curve_errors(category, material, _, mu):
 
 
 def slopes(category, material, _, mu):
-    """Derivatives of a curve with respect to log(thickness), which scale errors of path
-    differences."""
+    """Derivatives of the reflectance with respect to log(thickness)."""
     curve, thickness = film_curve(category), material["thinfilm_thickness"]
     up, down = (
         curve.at(mu, **{**material, "thinfilm_thickness": thickness * (1.0 + step)})
@@ -162,7 +159,7 @@ def slopes(category, material, _, mu):
 
 
 def wave_slopes(category, material, _, mu):
-    """Derivatives of a curve with respect to the amplitude of each Gaussian's wave."""
+    """Sum over all Gaussians of the reflectance's derivative with respect to log(`wave`)."""
     thickness, index = (material[f"thinfilm_{name}"] for name in ("thickness", "ior"))
     opd, matrix = film.path_difference(mu, thickness, index), np.abs(np.array(TEXT.matrix))
     total = 0.0
@@ -186,7 +183,7 @@ def single_share(category, material, _, mu):
 
 
 def average_errors(category, material, *_):
-    """Errors of F_ss by the shader's sum over three cosines."""
+    """Errors of the shader's F_ss, a sum over three cosines."""
     exact = film_curve(category).average(**material)
     return np.abs(average(category, material) - exact).max(axis=0)
 
@@ -200,7 +197,7 @@ def average(category, material, nodes=NODES):
 
 
 def visible_errors(category, material, alpha, mu):
-    """Errors of the average over visible facets by the shader's sum over three cosines."""
+    """Errors of the shader's mean reflectance of visible facets, a sum over three cosines."""
     exact = visible_average(category, material, alpha, mu)
     return np.abs(visible_mean(category, material, alpha, mu) - exact).max(axis=0)
 
@@ -212,12 +209,11 @@ def albedo_errors(category, material, alpha, mu):
 
 
 def seen_errors(category, material, alpha, mu):
-    """`albedo_errors` times the cosine of the view."""
     return mu * albedo_errors(category, material, alpha, mu)
 
 
 def visible_average(category, material, alpha, mu):
-    """Average over visible facets: the albedo with a film divided by the albedo of a mirror."""
+    """Mean reflectance of visible facets, computed as the albedo divided by a mirror's albedo."""
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     inputs = {name: value.T for name, value in material.items()}
     inputs["roughness"] = np.repeat(alpha[:, np.newaxis], 2, axis=1)
@@ -229,9 +225,9 @@ def visible_average(category, material, alpha, mu):
 
 
 def visible_mean(category, material, alpha, mu, coefficients=FACETS):
-    """Average over the visible facets by the shader's sum over three cosines.
+    """The shader's mean reflectance of visible facets, a sum over three cosines.
 
-    The cosines are Gauss nodes for a semicircular density, which is 0 at the ends of the range.
+    The cosines are Gaussian quadrature nodes for a semicircular density.
     """
     mean, reach, bend = facets(mu, alpha, coefficients)
     total = 0.0
@@ -250,7 +246,7 @@ MIRRORS = {
 
 
 def facets(mu, alpha, coefficients):
-    """Mean cosine between visible facets and view, and spread and skew of the three cosines."""
+    """Mean, spread and skew of the three cosines between wo and visible facets."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), 1.0
     polynomials = np.reshape(coefficients, (3, -1)) @ monomials(mu, alpha)
     mean, reach, bend = (a * b for a, b in zip(factors, polynomials, strict=True))
@@ -258,19 +254,20 @@ def facets(mu, alpha, coefficients):
 
 
 def monomials(mu, alpha):
-    """Monomials up to degree 3 in the cosine of the view and alpha / (alpha + 1/5)."""
+    """Monomials up to degree 3 in mu and alpha / (alpha + 1/5)."""
     y = alpha / (alpha + STEEP)
     return np.stack([mu**i * y**j for i in range(4) for j in range(4 - i)])
 
 
 def smooth_errors(category, material, _, mu):
-    """Errors due to F_ss in a smooth lobe's value F (1 + F_ss (1 - E_ss) / E_ss)."""
+    """Errors of a smooth lobe's value F (1 + F_ss (1 - E_ss) / E_ss) due to errors of F_ss."""
     E_ss = ggx_albedo_dir(mu, SMOOTH[0])
     F = film_curve(category).at(mu, **material).max(axis=0)
     return average_errors(category, material) * F * (1.0 - E_ss) / E_ss
 
 
-# Measured quantities, each with a function, ranges of films, and how many numbers describe a film.
+# Functions whose largest values are measured, with ranges of films. A film is described by NUMBERS
+# numbers, or by COLORED numbers if the row has COLORED.
 MEASURED = {
     "orders": (orders_errors, FILMS, COLORED),
     "orders of curves": (curve_errors, CLEAR, COLORED),
@@ -284,7 +281,7 @@ MEASURED = {
     "albedo from an index on": (albedo_errors, VISIBLE),
     "albedo in a picture": (seen_errors, VISIBLE),
 }
-# Measured root mean squares, each with a function and a set of films.
+# Functions whose root mean squares are measured, with ranges of films.
 SETS = {
     "all orders": (curve_errors, microfacets.ORDERED),
     "F_ss": (average_errors, microfacets.FRINGED),
@@ -298,7 +295,7 @@ SETS = {
 
 
 def substrates(unit):
-    """Inputs of the three nodes by category, from numbers in [0, 1] of shape (6, N) or (13, N)."""
+    """Inputs of each category, computed from numbers in [0, 1] of shape (6, N) or (13, N)."""
     count = unit.shape[1]
     edges = {name: np.full((3, count), value) for name, value in WHITE.items()}
     edges["exponent"] = np.full(count, 5.0)
@@ -312,7 +309,7 @@ def substrates(unit):
 
 
 def filmed(category, ranges, unit):
-    """Inputs of a node with a film, roughness, and cosine of the view, from numbers in [0, 1]."""
+    """Map numbers in [0, 1] to inputs of a node with a film, alpha, and the cosine of wo."""
     alpha, mu, thickness, index = (
         low + (high - low) * each for (low, high), each in zip(ranges.values(), unit, strict=False)
     )
@@ -321,7 +318,7 @@ def filmed(category, ranges, unit):
 
 
 def largest(errors, ranges, category, numbers=NUMBERS):
-    """Search for the film with the largest error within ranges.
+    """Search for the largest error of films within ranges.
 
     The search repeatedly varies the films with the largest errors, in smaller and smaller steps.
     Then differential evolution starts from the films with the largest errors. If COLORED numbers
@@ -357,7 +354,7 @@ def largest(errors, ranges, category, numbers=NUMBERS):
 
 
 def films(spec, ranges, seed):
-    """Category, material, roughness and cosine of the films that a check draws with `seed`."""
+    """Category, material, roughness and cosine of the films that a check uses with `seed`."""
     DRAWN.set(seed)
     batch = microfacets.film_views(spec, ranges)
     material = {

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits the nodes with which `genglsl/lib/microfacet_film.glsl` averages a film.
+"""Fits the nodes with which `genglsl/lib/microfacet_film.glsl` averages reflectances of a film.
 
-The script uses random films of up to 1000 nm on each kind of substrate, which differ from the films
-of the checks. Nodes for F_ss minimize the mean fourth power of the errors, which emphasizes the
-largest errors. Nodes for visible facets minimize the mean square error.
+The script uses random films of up to 1000 nm on each kind of substrate. The checks use other films.
+Nodes for F_ss minimize the mean fourth power of the errors to emphasize the largest errors. Nodes
+for visible facets minimize the mean square error.
 
     python -m tools.fits.thin_film_nodes
 """
@@ -19,15 +19,15 @@ SEED, COUNT = 24, 400
 BARE, HEAVY = 100, 8.0  # number and weight of samples without a film
 START = ((0.2, 0.6, 0.9), (0.15, 0.4, 0.45), (0.15, 0.12, 0.09))  # cosines, weights, widths
 FACETS = 384  # number of films for the fit of the visible facets
-GRID = 16  # `grid` has GRID views and GRID roughnesses
-TIE = 2e-2  # weight of an error of the moments, if an error of a film has weight 1
-BEND = 0.33  # b divided by the skewness of a t + b (t^2 - 1), where t has a semicircular density
+GRID = 16  # number of cosines and of roughnesses in `grid`
+TIE = 2e-2  # weight of errors of moments relative to errors of films
+BEND = 0.33  # ratio of b to the skewness of a t + b (t^2 - 1), for t with a semicircular density
 NEAR = 1e-5  # change of a coefficient for difference quotients
 SCALE = 1e3  # scales squared errors to about 1
 
 
 def random_films(count, ranges=fit.FILMS, seed=SEED):
-    """Random films by category, each with materials, roughnesses and views."""
+    """Yield each category with the inputs, alphas and cosines of random films."""
     rng = np.random.default_rng(seed)
     for category in fit.MIRRORS:
         unit = rng.random((fit.NUMBERS, count))
@@ -69,7 +69,7 @@ def facets():
 
     first = errors(start)
     slopes = [(errors(start + NEAR * axis) - first) / NEAR for axis in np.eye(len(start))]
-    # Coefficients that the films do not determine stay near the start.
+    # Additional rows keep coefficients that the films do not determine near `start`.
     rows = TIE * moment_rows(*grid())
     matrix = np.concatenate([np.stack(slopes, 1), rows])
     change = np.linalg.lstsq(matrix, np.append(-first, np.zeros(len(rows))), rcond=None)[0]
@@ -82,7 +82,7 @@ def grid():
 
 
 def moment_rows(mu, alpha):
-    """Matrix that maps coefficients to mean, spread and skew for each view and roughness."""
+    """Matrix that maps coefficients to mean, spread and skew for each mu and alpha."""
     factors = alpha * alpha / (mu + alpha), alpha / np.sqrt(mu + alpha), np.ones_like(mu)
     terms = fit.monomials(mu, alpha)
     blocks = np.zeros((3, mu.size, 3, len(terms)))
@@ -92,7 +92,7 @@ def moment_rows(mu, alpha):
 
 
 def moments_fit():
-    """Coefficients that best match the mean, spread and skewness of the facets' cosines."""
+    """Coefficients that best match the moments of the cosines between wo and visible facets."""
     mu, alpha = grid()
     mean, deviation, skewness = facet_moments(mu, alpha)
     b = np.clip(BEND * skewness, -0.8, 0.8)
@@ -103,7 +103,7 @@ def moments_fit():
 
 
 def facet_moments(mu, alpha):
-    """Mean, standard deviation and skewness of the cosine between visible facets and the view."""
+    """Mean, standard deviation and skewness of the cosine between wo and visible facets."""
     cosines, weights = (np.array(each) for each in zip(*sampled_facets(mu, alpha), strict=True))
     weights /= weights.sum(axis=0)
     mean = (weights * cosines).sum(axis=0)
@@ -113,10 +113,9 @@ def facet_moments(mu, alpha):
 
 
 def sampled_facets(mu, alpha):
-    """Cosines between 16 visible facets and the view, and the facets' weights.
+    """Yield cosines between wo and 16 visible facets, with weights.
 
-    Facets below `lowest` are excluded, because no such facet reflects light towards a view along
-    the normal.
+    Facets below `lowest` are excluded. If mu = 1, such facets would reflect light from below.
     """
     wo = np.stack([np.sqrt(1.0 - mu * mu), 0.0 * mu, mu], axis=-1)
     x, w = np.polynomial.legendre.leggauss(4)

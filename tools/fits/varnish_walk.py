@@ -5,8 +5,8 @@ In `dielectric_over_eon`, EON receives the light that the dielectric does not re
 from EON leaves. `varnished` has closed forms for light that leaves and for internal reflections.
 The random walks visit EON and GGX facets, and go from facet to facet as in [Heitz2016], so the
 interface loses no light. For each rho, the script prints the ratios of both models' albedos to the
-albedo of the walk and the largest error of `varnished`. The script also prints `varnished` divided
-by the walk for light from EON in each of twelve bins of the hemisphere.
+albedo of the walks, and the largest error of `varnished`. The hemisphere is also divided into
+twelve bins. The script prints the ratios of `varnished` to the walks for light from EON in a bin.
 """
 
 from itertools import product
@@ -26,10 +26,10 @@ ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 
 
 def interface(w, alpha, ior, rng):
-    """Directions, z >= 0, in which light from w leaves, and whether the light is transmitted."""
+    """Directions with z >= 0 in which paths from w leave, and whether each path is transmitted."""
     out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
-    # For each path: number, direction, share of facets that are lower than the path, and whether
-    # the path is below the interface.
+    # A path has an index, a direction, a height and a flag, which is set below the interface. The
+    # height is the fraction of facets that are lower than the path.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:
         # By [Heitz2016], the distance to the next facet depends on Lambda, which is negative for
@@ -56,7 +56,7 @@ def interface(w, alpha, ior, rng):
 
 
 def walk(mu, roughness, alpha, ior, paths=PATHS):
-    """Light returned by each path for each of RHO, (paths, 5), and final directions, (paths, 3)."""
+    """Final weights of paths for each of RHO, (paths, 5), and final directions, (paths, 3)."""
     rng = np.random.default_rng(SEED)
     out, below = interface(np.tile(view(mu), (paths, 1)), alpha, ior, rng)
     total, weight = np.where(below, 0.0, 1.0)[:, np.newaxis] + 0.0 * RHO, 1.0
@@ -78,7 +78,7 @@ def view(mu):
 
 
 def walked_bins(total, out):
-    """Light from EON in each bin by random walks, for each nonzero rho, (12, 4)."""
+    """Light from EON in each bin and for each nonzero rho, computed by random walks, (12, 4)."""
     azimuth = np.abs(np.arctan2(out[:, 1], out[:, 0])) / np.pi
     row, column = (
         np.minimum((x * n).astype(int), n - 1)
@@ -90,7 +90,7 @@ def walked_bins(total, out):
 
 
 def model_bins(mu, *inputs):
-    """Light from EON in each bin by the model `varnished`, for each nonzero rho, (12, 4)."""
+    """Light from EON in each bin and for each nonzero rho, computed by `varnished`, (12, 4)."""
     x, weight = (each / 2.0 for each in np.polynomial.legendre.leggauss(NODES))
     square, azimuth = ((np.arange(n)[:, np.newaxis] + 0.5 + x) / n for n in BINS)
     square, azimuth = square[:, np.newaxis, :, np.newaxis], np.pi * azimuth[:, np.newaxis]
@@ -105,7 +105,7 @@ def model_bins(mu, *inputs):
 
 
 def rows(paths=PATHS):
-    """Yield albedos of both models and of the walk, (3, 5), and ratios of bins, (12, 4)."""
+    """Yield albedos of both models and of the walk, (3, 5), and ratios in the bins, (12, 4)."""
     for ior, alpha, roughness, mu in product(INDICES, ALPHAS, ROUGHNESSES, COSINES):
         inputs = roughness, alpha, ior
         total, out = walk(mu, *inputs, paths)
