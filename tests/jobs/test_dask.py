@@ -123,7 +123,7 @@ class Client:
 
 
 WAITED = "no compatible Dask worker was available within 0.01 s; raise it with --waitForWorkers"
-ONE = f"must have a worker with mxeon {mxeon.__version__} and --nthreads 1; got 1 others"
+ONE = f"must have a worker with mxeon {mxeon.__version__} and --nthreads 1; got 1 incompatible"
 
 
 @pytest.mark.filterwarnings("ignore:worker tcp:UserWarning")

@@ -100,7 +100,7 @@ class Workers:
         if not self.compatible() and self._compatible:  # these workers will stay incompatible
             raise InputError(
                 f"cluster must have a worker with mxeon {mxeon.__version__} and --nthreads 1; "
-                f"got {len(self._compatible)} other workers"
+                f"got {len(self._compatible)} incompatible"
             )
         self.await_compatible()
 
