@@ -85,7 +85,7 @@ NODES_BY_CATEGORY = {
     "oren_nayar_diffuse_bsdf": "qon",
     "eon_diffuse_bsdf": "eon",
     "generalized_schlick": "schlick",
-    # In reversed order, the first mode of a node comes last and so overwrites the other modes.
+    # Rows are read in reverse order, so that a node's first mode overwrites the node's other modes.
     **{row.category: row.name for row in reversed((*PBR_NODES, SUBSURFACE_NODE, HAIR_NODE))},
 }
 
@@ -152,8 +152,8 @@ def _transmission_model(row: PbrNode) -> ShadingModel:
         return xp.where(z[:, np.newaxis] < 0.0, back, front)
 
     def albedo(wo: Array, inputs: Inputs) -> Array:
-        # The interface divides radiance by ior^2, so the integral of the BTDF is the transmitted
-        # fraction of the energy divided by ior^2.
+        # The interface divides radiance by ior^2. The integral of the BTDF is therefore the
+        # transmitted fraction of the energy, times 1 / ior^2.
         ior = passing.ior(inputs)[:, np.newaxis]
         ior = array_namespace(ior).maximum(ior, LEAST_IOR)
         passed: Array = passing.passed(wo, inputs, True) / ior**2
@@ -168,7 +168,7 @@ def _transmission_model(row: PbrNode) -> ShadingModel:
 
 
 def _coated_model(name: str, title: str) -> ShadingModel:
-    """The model of an interface over EON, where `alpha` is the roughness of the interface."""
+    """Model of a rough interface over EON. The roughness of the interface is `alpha`."""
     inputs = (
         parameter("oren_nayar_diffuse_bsdf", "color", "rho"),
         parameter("oren_nayar_diffuse_bsdf", "roughness"),
@@ -195,8 +195,8 @@ def _coated_model(name: str, title: str) -> ShadingModel:
 
 
 def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
-    """Result of a function of `mxeon.models.coat`, called once for each pair of alpha and ior."""
-    # With arrays of other libraries, several pairs of alpha and ior raise an error.
+    """Call a function of `mxeon.models.coat` once for each pair of alpha and ior."""
+    # Arrays of libraries other than NumPy raise an error for more than one pair of alpha and ior.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))

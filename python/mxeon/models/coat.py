@@ -132,8 +132,8 @@ def scaled_cosine(mu: Array, alpha: float | Array) -> Array:
 def coat_curves(alpha: Array, ior: Array) -> Array:
     """Chebyshev coefficients of (1 - E_ss) / E_ss and of E_r, shape (CURVE_NODES, 2).
 
-    Accuracy: both errors are below 2e-7 for alpha >= 0.01 and ior in [1, 4]. For a grazing view,
-    the integral over slopes contributes up to 5e-8 to the errors.
+    Accuracy: both errors are below 2e-7 for alpha >= 0.01 and ior in [1, 4]. For grazing viewing
+    directions, the integral over slopes contributes up to 5e-8.
     """
     xp, x = array_namespace(alpha), like(chebyshev_nodes(CURVE_NODES), alpha)
     mu, _ = cosine_at(alpha, x)
@@ -184,8 +184,8 @@ def dielectric_over_eon_brdf(
 
     Result (..., C): 1/sr. The BRDF is not reciprocal, because the compensation and the layering
     depend on wo only. Accuracy: E_r and the compensation have errors below 2e-7. The first call for
-    an `alpha` and `ior` tabulates both. [MaterialX2026], sections `layer` and Energy Compensation;
-    [Portsmouth2025], Eq. (19).
+    an `alpha` and `ior` tabulates E_r and the compensation. [MaterialX2026], sections `layer` and
+    Energy Compensation; [Portsmouth2025], Eq. (19).
 
         >>> wo, wi = [0.6, 0.0, 0.8], [-0.6, 0.0, 0.8]
         >>> dielectric_over_eon_brdf(wo, wi, [0.7, 0.1], 0.5, 0.3, 1.5).round(5)
@@ -220,7 +220,7 @@ def dielectric_over_eon_albedo_dir(
 def dielectric_over_eon_albedo_avg(
     rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> Array:
-    """Cosine-weighted average of `dielectric_over_eon_albedo_dir` over all views.
+    """Cosine-weighted average of `dielectric_over_eon_albedo_dir` over all viewing directions.
 
     Result (..., C). Accuracy: the error is below 2e-7. EON's albedo is a linear function of FON's
     loss H, so only H is integrated over the transmitted light.
@@ -299,7 +299,8 @@ def dielectric_over_eon_sample(
     `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...): p
     pdf_GGX + (1 - p) pdf_EON, in 1/sr. The facets are chosen with the probability p = E_r / E for
     the mean of rho's channels. The weight f mu_i / pdf of a sample lies between f_r mu_i / (p
-    pdf_GGX) and (1 - E_r) f_EON mu_i / ((1 - p) pdf_EON), which is E for a gray rho. [Dupuy2023].
+    pdf_GGX) and (1 - E_r) f_EON mu_i / ((1 - p) pdf_EON). The second quotient is E for a gray rho.
+    [Dupuy2023].
 
         >>> wi, pdf = dielectric_over_eon_sample([0.6, 0.0, 0.8], [0.5, 0.25], 0.7, 0.5, 0.3, 1.5)
         >>> wi.round(5), round(float(pdf), 5)
@@ -342,15 +343,12 @@ def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, coat: Coat) -> Arr
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
 
 
-TERMS, SMOOTH = 24, 16  # Chebyshev coefficients: TERMS for E_single, SMOOTH for D and b
+TERMS, SMOOTH = 24, 16  # TERMS Chebyshev coefficients for E_single, SMOOTH for D and b
 FINE, BELOW = 48, 24  # quadrature nodes within and beyond the critical angle
 
 
 class Curves(NamedTuple):
-    """Values of three functions of the cosine above the interface.
-
-    The field `b` is b(mu) mu' / S' with S' = sqrt(1 - mu'^2).
-    """
+    """Functions of the cosine mu outside the interface. `b` is b(mu) mu' / sqrt(1 - mu'^2)."""
 
     E_single: Array
     D: Array
@@ -358,7 +356,7 @@ class Curves(NamedTuple):
 
 
 class Means(NamedTuple):
-    """The means <D>, <H>_R and <b>_R for an interface, and `passed`, which is 1 - R."""
+    """Means <D>, <H>_R and <b>_R of an interface. The field `passed` is 1 - R."""
 
     D: float | Array
     passed: float | Array
@@ -368,7 +366,7 @@ class Means(NamedTuple):
 
 @dataclass(frozen=True)
 class Varnish:
-    """The Chebyshev coefficients of `Curves`, and the `Means`, for one interface."""
+    """Chebyshev coefficients of `Curves`, and the `Means` of the same interface."""
 
     alpha: float | Array
     ior: float | Array
@@ -423,10 +421,9 @@ def base_under_varnish(
     rho: Array,
     r: Array,
 ) -> Array:
-    """The bracket in equation (1), which is exactly the BRDF of EON if `ior` is 1.
+    """The bracket in equation (1). If `ior` is 1, the bracket is exactly the BRDF of EON.
 
-    The product k(mu_o) k(mu_i) is expanded in powers of W, which saves multiplications for a single
-    material.
+    To save multiplications for a single material, k(mu_o) k(mu_i) is expanded in powers of W.
     """
     (m_o, p_o, H_o), (m_i, p_i, H_i) = (
         mean_parts(*each, ior, r) for each in zip(mu, b, strict=True)
@@ -494,8 +491,8 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     D = E_single * E_single * missing * (1.0 + missing)
     facets = xp.tensordot(matrix, E_single, axes=1), xp.tensordot(matrix, D, axes=1)[:SMOOTH]
 
-    # Light reflected by EON has the density 2 mu' in mu'. The interface reflects the fraction E_r
-    # of the light within the critical angle, and all light beyond the critical angle.
+    # The cosine mu' of light from EON has the probability density 2 mu'. The interface reflects the
+    # fraction E_r of the light within the critical angle, and all light beyond the critical angle.
     fine, step = cosine_at(alpha, places)
     E_single, D = (arrays.at_least_0(chebyshev_sum(each, places)) for each in facets)
     area = 2.0 * fine * step * slope
@@ -507,8 +504,8 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     R = squared + xp.sum(total * share)
     H = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
-    # The integral of s / t over azimuths is 2 S S' (1 / max(mu, mu') - 1). R(m) is the fraction of
-    # the light with the cosine m that is reflected back to EON. In terms of R(m),
+    # The integral of s / t over all azimuths is 2 S S' (1 / max(mu, mu') - 1). R(m) is the fraction
+    # of the light with the cosine m that is reflected back to EON. In terms of R(m),
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
     #   <b>_R = 8 / (pi R^2) int R(m) S (1 - m) [int_0^m R(x) S x dx] dm.
     S = root((1.0 - fine) * (1.0 + fine)) / ior
@@ -592,7 +589,7 @@ def varnished_albedo_dir(
 
 @any_array
 def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float) -> Array:
-    """Cosine-weighted average of `varnished_albedo_dir` over all views.
+    """Cosine-weighted average of `varnished_albedo_dir` over all viewing directions.
 
     <E> = <E_r> + n^2 [<E_b> - R <E_b>_R - R (<E_b>_R - R <k>) (1 - <E_b>_R) / (1 - R <k>)]
     <E_r> = 1 - n^2 (1 - R)
@@ -647,9 +644,9 @@ def varnished_pdf(
 
 @any_array
 def _by_cosine(u: ArrayLike, share: Array) -> Array:
-    """Cosine-weighted direction for a first random number in [share, 1).
+    """Cosine-weighted direction for u1 in [share, 1).
 
-    Rescaling 1 - u1 instead of u1 to [0, 1) keeps all digits near u1 = 1.
+    1 - u1 is rescaled instead of u1, to keep all digits near u1 = 1.
     """
     u1, u2 = unpack_uniforms(u)
     rest = arrays.at_most((1.0 - u1) / nonzero(1.0 - share), 1.0)

@@ -183,9 +183,9 @@ def oren_nayar_angle(y: Array, x: Array) -> Array:
 def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) -> Array:
     """(sin(alpha) - (2 beta / pi)^3) / cos(beta); the limit 6 / pi if both directions graze.
 
-    (2 beta / pi)^3 is 1 - q (3 - 3 q + q^2), where q = 1 - 2 beta / pi, and
-    sin(alpha) is 1 - cos(alpha)^2 / (1 + sin(alpha)). In the difference, 1 - 1 is omitted,
-    so that no digits are lost.
+    (2 beta / pi)^3 is 1 - q (3 - 3 q + q^2), where q = 1 - 2 beta / pi, and sin(alpha) is 1 -
+    cos(alpha)^2 / (1 + sin(alpha)). The two ones cancel in the difference and are omitted, so no
+    digits are lost.
     """
     xp = array_namespace(mu_o, mu_i, S_o, S_i)
     high, low = xp.maximum(mu_o, mu_i), xp.minimum(mu_o, mu_i)
@@ -196,7 +196,7 @@ def oren_nayar_behind_slope(mu_o: Array, mu_i: Array, S_o: Array, S_i: Array) ->
 
 
 def oren_nayar_interreflection(rho: Array, sigma: Array) -> Array:
-    """Interreflection term of [OrenNayar1994], which [Fujii2013] adds to A."""
+    """Interreflection term of [OrenNayar1994]. [Fujii2013] adds this term to A."""
     return 0.17 * rho * (sigma**2 / (sigma**2 + 0.13))
 
 
@@ -212,7 +212,7 @@ def oren_nayar_formula(wo: Array, wi: Array, rho: Array, sigma: Array) -> Array:
     # The term C2 cos(phi) tan(beta), where sin(beta) cos(phi) is computed as s / sin(alpha).
     behind = oren_nayar_quotient(xp.minimum(s, 0.0), xp.maximum(S_o, S_i))
     behind = behind * oren_nayar_behind_slope(mu_o, mu_i, S_o, S_i)
-    # In the term with C3, 1 - cos(phi)^2 is computed as (cross / (S_o S_i))^2.
+    # In the term with C3, 1 - cos(phi)^2 is computed as sin(phi)^2.
     cross = wo[..., 0] * wi[..., 1] - wo[..., 1] * wi[..., 0]
     aside = oren_nayar_quotient(cross, S_o * S_i) ** 2 / (1.0 + xp.abs(cos_phi))
     aside = aside * oren_nayar_quotient(S_o + S_i, mu_o + mu_i)
@@ -385,7 +385,7 @@ def burley_brdf(wo: ArrayLike, wi: ArrayLike, rho: ArrayLike, roughness: ArrayLi
 
 @any_array
 def burley_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of Burley's diffuse model in closed form; at grazing, up to 1.558 rho.
+    """Directional albedo of Burley's diffuse model in closed form; up to 1.558 rho near mu = 0.
 
         E(mu) = rho (1 + n (h + 2 r mu / 3) + h / 21 + r mu / 84 + n Q),
         n = (1 - mu)^5,  h = r - 1/2,
@@ -528,7 +528,7 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
         <E> = rho (1 + c2 roughness) / D = rho <E_FON> / (1 - rho (1 - <E_FON>)),
         D = 1 + c1 roughness - rho roughness (c1 - c2)
 
-    This is the average of [Portsmouth2025], Eq. (28), by Eq. (15), and the inverse of Eq. (33).
+    This is the average of [Portsmouth2025], Eq. (28). Eq. (33) is the inverse.
 
         >>> eon_albedo_avg([0.5, 1.0], 1.0).round(6)
         array([0.45439, 1.     ])
@@ -538,7 +538,7 @@ def eon_albedo_avg(rho: ArrayLike, roughness: ArrayLike) -> Array:
 
 
 def eon_albedo(loss: Array | float, rho: Array, r: Array) -> Array:
-    """Albedo of EON, directional or average, where FON's albedo is 1 - r A `loss`."""
+    """Directional or average albedo of EON, for FON's albedo 1 - r A `loss`."""
     return rho * (1.0 - (1.0 - rho) * r * loss / eon_denominator(rho, r))
 
 
@@ -580,9 +580,9 @@ def eon_rho_from_albedo_normal(color: ArrayLike, roughness: ArrayLike) -> Array:
 
         rho = 2 C d / (b + sqrt(b^2 + 4 c2 r d C)),  b = 1 + (c1 - c2) r C,  d = 1 + c1 r
 
-    Accuracy: the relative error is below 1e-15. rho is the root in Eq. (30), scaled by 1 + c1 r and
-    rewritten without the difference in the numerator. At low roughness, nothing cancels and the
-    divisor is not 0, so the paper's series is not needed. [Portsmouth2025], Eqs. (28) to (31).
+    Accuracy: the relative error is below 1e-15. rho is the positive root of c2 r rho^2 + b rho = C
+    d, written without a difference. At low roughness, nothing cancels and the divisor is not 0, so
+    the paper's series is not needed. [Portsmouth2025], Eqs. (28) to (31).
 
         >>> eon_rho_from_albedo_normal([0.0, 0.18, 0.8, 1.0], 1.0).round(6)
         array([0.      , 0.219784, 0.835673, 1.      ])

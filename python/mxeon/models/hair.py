@@ -43,7 +43,7 @@ TAIL = np.cumprod(
 
 
 def bessel_scaled(x: Array) -> Array:
-    """exp(-x) I_0(x) for x >= 0: [Olver2010], Eq. 10.25.2 and 10.40.1."""
+    """exp(-x) I_0(x) for x >= 0: [Olver2010], Eqs. 10.25.2 and 10.40.1."""
     xp = array_namespace(x)
     small, large = xp.minimum(x, BESSEL), xp.maximum(x, BESSEL)
     series, tail = _polynomial(SERIES, xp.square(small / BESSEL)), _polynomial(TAIL, BESSEL / large)
@@ -117,20 +117,20 @@ TEXT = HairForm()
 
 @dataclass(frozen=True)
 class Section:
-    """Angles of a view direction and of the refracted ray in the cross-section of the fiber."""
+    """Angles of the viewing direction and of the refracted ray in the fiber's cross-section."""
 
     sin_o: Array  # sine of the viewer's inclination
     cos_o: Array  # cosine of the viewer's inclination
-    gamma_o: Array  # angle between the normal and the view
+    gamma_o: Array  # angle between the normal and the viewing direction
     gamma_t: Array  # angle between the normal and the refracted ray
 
 
 def section(wo: Array, ior: Array) -> tuple[Section, Array]:
-    """Angles of section Hair Fiber Geometry for a view, and the effective index of refraction.
+    """Angles of section Hair Fiber Geometry, and the effective index of refraction.
 
     The specification lets the renderer choose the offset h = sin(gamma_o). As in MaterialX's
-    shaders, h is the offset of the point with normal +z. For a view along the fiber, h is 0. If
-    `ior` is below 1 and no light enters the fiber, F is 1 and gamma_t has no effect.
+    shaders, h is the offset of the point with normal +z. If wo is along the fiber, h is 0. If `ior`
+    is below 1 and no light enters the fiber, F is 1 and gamma_t has no effect.
     """
     xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, arrays.least_normal(wo))
     sin_o, cos_o = wo[0], arrays.hypot(wo[1], wo[2])
@@ -264,7 +264,7 @@ def chiang_hair_bcsdf(wo: ArrayLike, wi: ArrayLike, **inputs: Any) -> Array:
 def chiang_hair_attenuation(
     wo: ArrayLike, ior: ArrayLike, absorption_coefficient: ArrayLike
 ) -> Array:
-    """Attenuation factors A_R, A_TT, A_TRT and A_TRRT+ for a view.
+    """Attenuation factors A_R, A_TT, A_TRT and A_TRRT+ for a viewing direction.
 
     - `ior` (...): Index of refraction of the fiber, in [0, 1e50].
     - `absorption_coefficient` (..., C): Absorption per radius of the fiber, in [0, 1e50].
@@ -369,7 +369,7 @@ def deon_hair_absorption_from_melanin(
     - `eumelanin_color`, `pheomelanin_color` (..., 3): Transmittance of the pigment along one fiber
       radius, in (0, 1].
 
-    The sum of both pigments' absorptions is from [dEon2011]. The specification does not say how
+    [dEon2011] adds the absorptions of both pigments. The specification does not say how
     concentration and redness determine the amount of each pigment. The equation for the amounts is
     from MaterialX's implementations. [MaterialX2026], section deon_hair_absorption_from_melanin.
 

@@ -3,14 +3,14 @@
 
 Radiances are per channel, in any unit. Directions point away from the surface, whose normal is +z.
 In media, directions point away from the point of scattering, so undeflected light has wi = -wo. A
-view below the horizon sees the back of the surface. There is no function for `measured_edf`,
+viewer below the horizon sees the back of the surface. There is no function for `measured_edf`,
 because the values of this node come from a file.
 
 - `wo`, `wi` (..., 3): Unit vectors to 1e-6; z may be negative.
 - `radiance` (..., C): Radiance c per channel, in [0, 1e50]; a cone's radiance is c inside the cone.
 - `inner_angle`, `outer_angle` (...): Full angles of the cones at which the falloff starts and ends,
   in degrees, in [0, 360].
-- `color0`, `color90` (..., C): Factors along the normal and at grazing, in [0, 1].
+- `color0`, `color90` (..., C): Factors along the normal and at grazing angles, in [0, 1].
 - `exponent` (...): Exponent q, in [0, 1e50]. With exponent 0, the factor is always `color90`.
 - `absorption`, `scattering`: Coefficients per channel in 1/m, in [0, 1e50].
 - `g`: Mean cosine of the deflection, in (-1, 1). For -1 and 1, the phase function would be a delta
@@ -59,7 +59,7 @@ def conical_edf(
         L_e = c smoothstep(c_out, c_in, cos)    if outer_angle > inner_angle
         L_e = c if cos >= c_in, else 0          otherwise
 
-    c_in and c_out are the cosines of half the inner and outer angles. For a view below the horizon,
+    c_in and c_out are the cosines of half the inner and outer angles. If wo is below the horizon,
     cos counts as 0. [MaterialX2026], section `conical_edf`, Conical Falloff Equations.
 
         >>> conical_edf([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8]], [2.0], 60.0, 90.0).round(6)
@@ -146,8 +146,8 @@ def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2)),  cos = -dot(wo, wi)
 
-    To avoid cancellation near g = 1 and g = -1, 1 + g^2 - 2 g cos is computed as
-    (1 - |g|)^2 + 2 |g| (1 - cos), where cos is negated for g < 0, and 1 - g^2 as a product.
+    To avoid cancellation near g = 1 and g = -1, 1 + g^2 - 2 g cos is computed as (1 - |g|)^2 + 2
+    |g| (1 - cos), where cos is negated for g < 0. 1 - g^2 is computed as a product.
     [MaterialX2026], section `anisotropic_vdf`, Henyey-Greenstein Phase Function.
 
         >>> round(float(hg_pdf([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], 0.5)), 6)
@@ -188,9 +188,9 @@ def surface_radiance(emission: ArrayLike, scattered: ArrayLike, opacity: ArrayLi
     return covered * (emitted + light)
 
 
-# Nodes per panel, and number of panels, which is large because the integrand has a kink.
+# Nodes per panel, and number of panels. PANELS is large because the integrand has a kink.
 BLUR_NODES, PANELS = 50, 40
-FAR = 3.0  # ratio of the lengths of the profile's exponentials
+FAR = 3.0  # the profile's second decay length divided by the first decay length
 
 
 @any_array
@@ -218,7 +218,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
 
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
-    """`diffusion_blur` for valid arrays, where `far` is FAR in the specification's profile."""
+    """`diffusion_blur` for valid arrays. In the specification's profile, `far` is FAR."""
     reach = reach[..., np.newaxis]
     (first, share_1), (second, share_2) = (_exponential(mu, each) for each in (reach, far * reach))
     total = 0.25 * share_1 + 0.75 * share_2
@@ -226,12 +226,12 @@ def blur_to(mu: Array, reach: Array, far: float) -> Array:
 
 
 def _exponential(mu: Array, reach: Array) -> tuple[Array, Array]:
-    """Cosine blurred by exponentially distributed chords up to 2, and the chords' probability."""
+    """Returns the cosine blurred over chords r <= 2 of density exp(-r / reach), and P(r <= 2)."""
     xp, rule = array_namespace(mu, reach), unit_rule(BLUR_NODES, PANELS)
     u, weights = (like(each, reach) for each in rule)
     share = -xp.expm1(-2.0 / reach)
     distance = xp.minimum(-reach * xp.log1p(-u * share), 2.0)
-    # `circle` is the mean of max(cos(theta), 0) over all points at a distance.
+    # `circle` is the mean of max(cos(theta), 0) over all points at a given distance.
     mu, squared = mu[..., np.newaxis], distance * distance
     along = mu * (1.0 - 0.5 * squared)
     across = arrays.root(at_least_0((1.0 - mu * mu) * squared * (1.0 - 0.25 * squared)))

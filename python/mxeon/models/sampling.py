@@ -256,7 +256,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     # `rest` is 1 - v[3], computed without cancellation.
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])
-    # Sample a cosine from each of lower, upper and multiple, and keep the chosen part's cosine.
+    # Sample a cosine for each of lower, upper and multiple, and keep the chosen part's cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, arrays.power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(arrays.power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))
@@ -375,8 +375,8 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
     """Direction sampled from the transformed cosine, possibly below the horizon, and its density.
 
     `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
-    1/sr. The probability of a wasted sample, (1 - 1/sqrt(1 + d^2))/2, is at most 0.0534, at
-    roughness 1 and for a grazing view. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
+    1/sr. The probability of a wasted sample, (1 - 1/sqrt(1 + d^2))/2, is at most 0.0534, for a
+    grazing wo and roughness 1. [Portsmouth2025], Section 4, Eqs. (22) to (25), Listing 2.
 
         >>> wi, pdf = ltc_sample([1.0, 0.0, 0.0], [0.95, 0.0], 1.0)
         >>> float(wi[2]) < 0.0
@@ -446,7 +446,7 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
     wi = rotate_z(wi, cosine, -sine)
     x, y, z = wi[..., 0], wi[..., 1], wi[..., 2]
     det = c * (a - b * d)
-    # The adjugate of M times wi is parallel to wh.
+    # adj(M) wi is parallel to wh, where adj(M) is the adjugate matrix of M.
     wh_z = c * (a * z - d * x)
     squared = (c * (x - b * z)) ** 2 + ((a - b * d) * y) ** 2 + wh_z**2
     return (det / squared) ** 2 * arrays.at_least_0(wh_z) / np.pi
@@ -564,7 +564,7 @@ def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> A
     wh = around(root(rest), root(u1), u2)
     x, y = wh[..., 0], wh[..., 1]
     xp, kept, length = array_namespace(x, d), cltc_kept_fraction(d), root(1.0 + d * d)
-    lost = 0.5 * d * d / (length * (1.0 + length))  # 1 - kept without cancellation
+    lost = 0.5 * d * d / (length * (1.0 + length))  # `1 - kept` without cancellation
     half, negative = root(rest + x * x), x < 0.0
     larger = half + xp.where(negative, -x, x)
     smaller = rest / larger
@@ -622,7 +622,7 @@ def _components(vectors: dict[str, Numbers]) -> list[Array]:
 
 
 def visible_density(wo: Array, wh: Array, roughness: Array) -> Array:
-    """Density G1(wo) D(wh) / (4 mu_o), where G1 / mu_o is finite at grazing.
+    """Density G1(wo) D(wh) / (4 mu_o), computed without a division by mu_o.
 
     The components of the vectors are on the first axis.
     """
@@ -638,7 +638,7 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
     xp = array_namespace(wo, u1, roughness)
     stretched = xp.stack([roughness[0] * wo[0], roughness[1] * wo[1], wo[2]])
     length = root(xp.sum(stretched * stretched, axis=0))
-    # For alpha 0 and a grazing view, `length` is 0, and the normal does not depend on u1 and u2.
+    # For alpha 0 and a grazing wo, `length` is 0, and the normal does not depend on u1 and u2.
     stretched = stretched / xp.where(length > 0.0, length, 1.0)
     # Sample a uniform point on the part of the unit sphere with z > -stretched[2].
     down = (1.0 + stretched[2]) * u1

@@ -45,7 +45,7 @@ class Rows:
 
 @any_array
 def rows(parameters: Sequence[Parameter], vectors: Collection[str], /, **values: ArrayLike) -> Rows:
-    """`Rows` of the vectors and of the parameters' values, which are passed by name."""
+    """`Rows` of vectors and of parameters. `values` holds both by name."""
     directions = {name: _floats(arguments.checked_real(name, values[name])) for name in vectors}
     for name, w in directions.items():
         count = 2 if name == "u" else 3
@@ -105,7 +105,7 @@ def _flattened(array: Array, lead: tuple[int, ...], last: bool, whole: bool = Fa
     return xp.reshape(xp.broadcast_to(array, (*lead, *tail)), (-1, *tail))
 
 
-# Functions that a model may have, with the end of the message if the model lacks the function.
+# End of the error message for a function that a model lacks, by name of the function.
 LACKS = {
     **dict.fromkeys(("bsdf", "albedo_dir"), ""),
     **dict.fromkeys(("sample", "pdf"), ": no density of refracted light is implemented"),
@@ -151,7 +151,7 @@ class ShadingModel:
     row: PbrNode
     parameters: tuple[Parameter, ...]  # inputs: name, default, interval, unit
     sampler: ModelSampler | None = None
-    lights: str = "front"  # side of the light that the model scatters: "front", "back", "all sides"
+    lights: str = "front"  # side from which the model scatters light: "front", "back", "all sides"
 
     @property
     def name(self) -> str:
@@ -236,15 +236,15 @@ class ShadingModel:
         """Directional albedo, the integral of value times cosine. For hair, the cosine is omitted.
 
         - `mu` (...): Cosine of the viewer's polar angle, in [0, 1].
-        - `azimuth` (...): Angle between the viewer's azimuth and the tangent, in radians, which
-          matters only for anisotropic models.
+        - `azimuth` (...): Angle between the viewer's azimuth and the tangent, in radians. Only
+          anisotropic models use this angle.
         """
         call = self._bound({"view": views(mu, azimuth)}, inputs, named)
         integral = self.row.integral or self.row.albedo
         return call.colors(integral(call.vectors[0], call.inputs))
 
     def albedo_avg(self, *inputs: ArrayLike, **named: ArrayLike) -> Array:
-        """Average albedo under uniform light, for models whose average has a closed form."""
+        """Average albedo under uniform illumination, for models whose average has a closed form."""
         self._need("albedo_avg")
         assert self.row.average is not None
         call = self._bound({}, inputs, named)
@@ -285,7 +285,7 @@ def _on_side(
         return function(wo, wi, call.inputs)
     xp, z = array_namespace(wi), side * wi[:, 2]
     outside = z < -arguments.ROUNDING
-    # If no value is 0, the shortcut is up to three times as fast.
+    # If no value has to be 0, a call without mirroring is up to three times as fast.
     if xp is arrays.NUMPY and not outside.any():
         return function(wo, wi, call.inputs)
     mirrored = xp.stack([wi[:, 0], wi[:, 1], side * xp.where(outside, -z, z)], axis=-1)

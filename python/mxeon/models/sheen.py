@@ -69,10 +69,10 @@ def zeltner_brdf(wo: ArrayLike, wi: ArrayLike, color: ArrayLike, roughness: Arra
         f = color E(mu_o) a^2 / (pi |M^-1 wi|^4),  M^-1 = (a 0 b; 0 a 0; 0 0 1)
 
     f is not reciprocal. E is `zeltner_albedo_dir`. The specification's equation is for f times the
-    cosine, so the cosine of D_o is omitted. M is defined in the frame in which wo has azimuth 0. If
-    wo is the normal, the azimuth of the frame has no effect, because b is 0. Accuracy: the error is
-    below (f + 1 / pi) 2^-53 times 66 / roughness. [MaterialX2026], Zeltner Sheen Model;
-    [Zeltner2022], where wo is called omega_i.
+    cosine, so the cosine in the specification's D_o is omitted here. M is defined in the frame in
+    which wo has azimuth 0. If wo is the normal, the azimuth of the frame has no effect, because b
+    is 0. Accuracy: the error is below (f + 1 / pi) 2^-53 times 66 / roughness. [MaterialX2026],
+    Zeltner Sheen Model; [Zeltner2022], where wo is called omega_i.
 
         >>> zeltner_brdf([0.6, 0.0, 0.8], [0.8, 0.0, 0.6], [0.2, 0.8], 0.5).round(6)
         array([0.002916, 0.011662])
@@ -86,10 +86,10 @@ def zeltner_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E = exp(-((mu - m) / s)^2 / 2) / (s sqrt(2 pi)) + o
 
-    E is negative for roughness in [0.03, 0.132] and views that do not graze the surface; neither
-    the specification nor shaders clamp E. The matrix M keeps the sign of z, so no part of the
-    transformed cosine lies below the horizon, and E is exactly the integral of `zeltner_brdf` times
-    the cosine. [MaterialX2026], Zeltner Sheen Model, section Directional Albedo.
+    E is negative for roughness in [0.03, 0.132], except near grazing. Neither the specification nor
+    shaders clamp E. The matrix M keeps the sign of z, so no part of the transformed cosine lies
+    below the horizon, and E is exactly the integral of `zeltner_brdf` times the cosine.
+    [MaterialX2026], Zeltner Sheen Model, section Directional Albedo.
 
         >>> round(float(zeltner_albedo_dir(0.3, 0.5)), 6)
         0.315212
@@ -115,7 +115,7 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
     upright = xp.square(mu_o + mu_i)
     total = flat + upright
     divisor = mu_o + mu_i - mu_o * mu_i
-    # If `flat` is 0, the result is 0: by exp(-inf) in NumPy, by `where` in other libraries.
+    # If `flat` is 0, the result is 0. NumPy computes exp(-inf). Other libraries use `where`.
     counted = (roughness > 0.0) & (divisor >= least)
     smooth = counted & (flat > 0.0)
     roughness, flat = guarded(roughness, smooth, 1.0), guarded(flat, smooth, 1.0)
@@ -224,9 +224,9 @@ def _integral(mu: Array, roughness: Array, steep: bool) -> Array:
         (True, delta, 0.5 * np.pi - 2.0 * delta),
         (False, 0.5 * np.pi - delta, delta),
     ):
-        # At latitudes above 10 sqrt(roughness), the density is below exp(-50) times the maximum.
+        # At latitudes above 10 sqrt(roughness), D is below exp(-50) times the largest D.
         width = xp.minimum(span, 10.0 * xp.sqrt(roughness))
-        # `above` is the distance from the lower end of the interval, `below` from the upper end.
+        # `above` and `below` are the distances from the lower and the upper end of the interval.
         above = width[..., np.newaxis] * x
         below = width[..., np.newaxis] * (1.0 - x if xp is not arrays.NUMPY else x[::-1])
         below = below + (span - width)[..., np.newaxis]
@@ -249,7 +249,7 @@ def _azimuths(
     c, s = xp.sin(latitude), xp.cos(latitude)
     a, b = mu * c, root((1.0 - mu) * (1.0 + mu)) * s
     if partial:
-        # The largest phi is 2 atan(rise / fall). sin(2 below) equals sin(2 (latitude + delta)).
+        # mu_i is 0 at phi = 2 atan(rise / fall), because sin(2 below) is sin(2 (latitude + delta)).
         rise, fall = root(xp.sin(2.0 * above)), root(xp.sin(2.0 * below))
     else:
         rise, fall = 0.0 * a + 1.0, 0.0 * a

@@ -62,7 +62,7 @@ GAUSSIANS = (
 )
 NORMAL = 1.0685e-7
 METERS = 1e-9  # converts nm to m
-# Centers, standard deviations and areas of the Gaussians, and a (3, 4) matrix that sums X, Y and Z.
+# Centers, standard deviations and areas of the Gaussians. A row of WEIGHTS sums X, Y or Z.
 CENTERS = np.array([mu for _, _, mu, _ in GAUSSIANS])
 SPREADS = np.sqrt([variance for *_, variance in GAUSSIANS])
 AREAS = [v * np.sqrt(2.0 * np.pi * variance) / NORMAL for _, v, _, variance in GAUSSIANS]
@@ -94,7 +94,7 @@ def refracted(mu: Array, film_ior: Array) -> Array:
     """Cosine of the refracted angle theta_t in the film, by section Three-Layer Geometry."""
     xp = array_namespace(mu, film_ior)
     squared = xp.maximum(1.0 - (1.0 - mu) * (1.0 + mu) / film_ior**2, 0.0)
-    # If `squared` is 0, the result is `mu`, whose derivative is finite.
+    # `squared` is 0 only where `mu` is 0. The derivative of `mu` is finite.
     return xp.sqrt(squared) if xp is NUMPY else xp.where(squared > 0.0, root(squared), mu)
 
 
@@ -377,7 +377,7 @@ def _film_average(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of POINTS nodes, the matrix that interpolates at FINE nodes, and the fine weights."""
+    """Cosines of POINTS nodes, interpolation matrix to FINE nodes, weights of the FINE nodes."""
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)

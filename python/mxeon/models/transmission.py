@@ -2,7 +2,7 @@
 """Transmission through microfacets of dielectrics and of the generalized Schlick node.
 
 BTDFs are in 1/sr and without the cosine. `ior` is the index of refraction of wi's medium divided by
-the index of wo's medium, so a view from inside a solid has the inverse of the node's index. If
+the index of wo's medium, so `ior` is the inverse of the node's index if wo is inside the solid. If
 alpha is 0, or if the index of refraction is 1, so that light is not bent, the BTDF is a delta
 function and counts as 0. BTDFs are for radiance, which is divided by ior^2 when light passes from
 the medium of wi to the medium of wo. Hence the integral of BTDF times cosine over wi, multiplied by
@@ -16,7 +16,7 @@ facets.
 - `roughness` (..., 2) or (): alpha along tangent and bitangent, in [0, 1]; a number is isotropic.
 - `ior` (...): Index of refraction of the far side relative to wo's side, in [0, 1e50].
 - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at the angle
-  acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
+  acos(1/7), and reflectance at grazing incidence, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 - `reading`: A key of READINGS, a way to understand the specification of `generalized_schlick_bsdf`.
   The reading determines the index of refraction, which the node lacks, and 1 - F.
@@ -169,7 +169,7 @@ def evaluate_btdf(
 
 
 CAP_NODES = 48  # number of heights, and number of azimuths, on the spherical cap of visible normals
-CAP_BLOCK = 2**4  # views per block
+CAP_BLOCK = 2**4  # elements per block
 # Largest 1 - ior^2 in the quadrature; if `ior` is below 3e-8, almost no light is transmitted.
 MOST_SQUARED = 1.0 - 1e-15
 
@@ -229,7 +229,7 @@ def evaluate_transmittance(
         spread = {k: v[new] if k in vectors else v for k, v in material.items()}
         passed = (1.0 - at(cosine, **spread)) * weight
         if shadow:
-            # Multiply by G2 / G1(wo), which is finite at grazing and 1 at alpha 0.
+            # Multiply by G2 / G1(wo), which is finite for grazing wo and is 1 at alpha 0.
             mu_i, length = within(mu_i), ggx.stretched_length(wo, roughness)
             visibility = ggx.reciprocal(2.0 * (length * mu_i + length_i * wo[2]))
             passed = passed * (2.0 * mu_i * visibility * (wo[2] + length))
@@ -280,7 +280,7 @@ LEAST_SCALE = 0.05
 def reversed_transmittance(
     mu: Array, alpha: float, ior: float, reflected: Callable[[Array], Array]
 ) -> Array:
-    """Fraction of light that is transmitted from the denser side, (N, C), by reversed paths.
+    """Fraction of light transmitted from the denser side, (N, C), computed from reversed paths.
 
     P(wo) is the fraction that is transmitted from outside. Reversing a path exchanges wo and wi:
 
@@ -291,8 +291,8 @@ def reversed_transmittance(
     side is the mean of P G1(wo) / G1(wi) over the facets visible from wi. The cosine-weighted
     average of this fraction, multiplied by n^2, is the average of P.
 
-    - `mu` (N,): Cosines of views on the denser side.
-    - `ior`: Index of refraction of the far side relative to the view's side, below 1.
+    - `mu` (N,): Cosines on the denser side.
+    - `ior`: Index of refraction of the far side relative to the denser side, below 1.
     - `reflected`: Function from cosines outside, (M,), to the albedo 1 - P, (M, C).
     """
     s, scale = chebyshev_nodes(PASSED_NODES) ** 3, max(alpha, LEAST_SCALE)
@@ -446,8 +446,8 @@ def generalized_schlick_transmittance_dir(
 ) -> Array:
     """Fraction of the light from `wo` that is transmitted, by quadrature.
 
-    Accuracy: the absolute error is below 2e-4 for a view from outside and an exponent of at least
-    1, and below 1e-8 for a view from inside. [MaterialX2026], section Directional Albedo and Energy
+    Accuracy: the absolute error is below 2e-4 for a wo outside the solid and an exponent of at
+    least 1, and below 1e-8 for a wo inside. [MaterialX2026], section Directional Albedo and Energy
     Conservation.
 
         >>> wo, alpha = [0.6, 0.0, 0.8], [0.3, 0.3]

@@ -23,14 +23,14 @@ from mxeon.names import NONE, unknown
 
 _LARGEST = float(np.finfo(np.float64).max)
 
-# Each range has a minimum, a maximum, and a text for messages. Both ends are valid values.
+# Smallest and largest valid value of each range, and the notation of the range in messages.
 _BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
 _SHARE = (0.0, 1.0, "[0, 1]")
 _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
 _WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float64
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
-# Closed ranges, to which values outside are clamped if the excess is below a rounding of float32.
+# A value outside one of these ranges by less than a rounding of float32 is clamped.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 ROUNDING = 2.0**-23
 # Tolerance of the squared length of a direction. Directions rounded to float32 are accepted.
@@ -138,7 +138,7 @@ def channel_count(colors: Mapping[str, Numbers]) -> int:
 
 
 def blocks(shape: tuple[int, ...], size: int = BLOCK) -> Iterator[tuple[slice, ...]]:
-    """Slices that divide an array into blocks of about `size` elements at most."""
+    """Slices that divide an array into blocks of at most about `size` elements."""
     # The elements of all axes from `axis` to the last fit into one block.
     axis, inner = len(shape), 1
     while axis > 0 and inner * shape[axis - 1] <= size:

@@ -49,7 +49,7 @@ class Namespace(Protocol):
 PLAIN = np.ndarray, np.generic, float, int, list, tuple
 # NumPy 1 lacks some names of the array API standard, such as `atan`.
 NUMPY = cast(Namespace, np if hasattr(np, "atan") else import_module("array_api_compat.numpy"))
-# By library name: array types without the standard's methods, and namespaces of functions.
+# The keys are names of libraries. OTHERS has array types without the standard's methods.
 OTHERS: dict[str, type] = {}
 FUNCTIONS: dict[str, Namespace] = {}
 
@@ -65,7 +65,7 @@ def library(value: object) -> str:
 
 
 def array_namespace(*arrays: object) -> Namespace:
-    """Array functions of the library to which the arguments belong, which is NumPy for numbers."""
+    """Array functions of the arguments' library. Numbers belong to NumPy."""
     foreign = {name: each for each in arrays if (name := library(each))}
     if not foreign:
         return NUMPY
@@ -81,9 +81,9 @@ def array_namespace(*arrays: object) -> Namespace:
 def any_array(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator that lets a function accept and return arrays of any library.
 
-    Results for NumPy arrays are unchanged to the last bit. Otherwise numbers, lists and NumPy
-    arrays are converted to the library, precision and device of the other arrays. Plain numbers for
-    parameters annotated as `float` are not converted.
+    Results for NumPy arrays are unchanged to the last bit. If an argument is an array of another
+    library, numbers, lists and NumPy arrays are converted to that library, precision and device.
+    Plain numbers for parameters annotated as `float` are not converted.
     """
     parameters = signature(function).parameters.values()
     names = [each.name for each in parameters]
@@ -194,7 +194,7 @@ def at_most(x: Array, high: float) -> Array:
 
 
 def trimmed(x: Array, high: float) -> Array:
-    """x clamped to `high`, which x exceeds only by rounding. Derivatives ignore the clamp."""
+    """x clamped to `high`, if x exceeds `high` only by rounding. Derivatives ignore the clamp."""
     xp = array_namespace(x)
     return xp.minimum(x, high) if xp is NUMPY else x
 

@@ -14,7 +14,7 @@ def chebyshev_nodes(count: int) -> Array:
 
 
 def chebyshev_coefficients(values: Array) -> Array:
-    """Coefficients of the interpolant, in the shape of `values`, whose first axis is the nodes."""
+    """Coefficients, in the shape of `values`, for values at `chebyshev_nodes` on axis 0."""
     count = len(values)
     cosines = np.cos(np.outer(np.arange(count), _angles(count)))
     cosines[0] *= 0.5

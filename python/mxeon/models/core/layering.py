@@ -2,8 +2,8 @@
 """Algebra of `layer`, `mix`, `add` and `multiply` on values and throughputs of lobes.
 
 The throughput of a lobe is 1 - E, where E is the directional albedo of the lobe without its color.
-The throughput is negative if E exceeds 1. The clamp to at least 0 happens only in `layer`, so that
-a sum can be scaled or mixed first; the specification does not define E above 1. Values may include
+The throughput is negative if E exceeds 1. Only `layer` clamps the throughput to at least 0, so that
+a sum can be scaled or mixed before. The specification does not define E above 1. Values may include
 the cosine or not, because all four operations are linear. Lobes of different shapes broadcast.
 """
 
@@ -20,7 +20,7 @@ class Bsdf:
     """A lobe, or a combination of lobes, for one or many pairs of directions.
 
     - `value`: BSDF in 1/sr, with or without the cosine.
-    - `throughput`: 1 - E per channel, the share of the light that reaches the layer below; a
+    - `throughput`: 1 - E per channel, the fraction of the light that reaches the layer below. A
       negative throughput passes no light. An opaque lobe of weight w has throughput 1 - w for any
       albedo.
     """
@@ -33,11 +33,11 @@ class Bsdf:
 def throughput(albedo: ArrayLike) -> Array:
     """Throughput T = 1 - E of a lobe whose directional albedo, weight included, is E (..., C).
 
-    T is negative if the albedo exceeds 1, and above 1 if the albedo is negative; Zeltner's fit
-    falls to -2.2e-5. E is the albedo of a white lobe, because light that the `color` of
-    `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is absorbed. In specifications before
-    August 2026, E includes the color. Raises `ValueError` if an albedo is infinite or NaN.
-    [MaterialX2026] of August 2026, Vertical-Layering Transmittance.
+    T is negative if the albedo exceeds 1. T exceeds 1 if the albedo is negative; the albedo of
+    Zeltner's fit is at least -2.2e-5. E is the albedo of a white lobe, because light that the
+    `color` of `sheen_bsdf` or the `tint` of `dielectric_bsdf` removes is absorbed. In
+    specifications before August 2026, E includes the color. Raises `ValueError` if an albedo is
+    infinite or NaN. [MaterialX2026] of August 2026, Vertical-Layering Transmittance.
 
         >>> throughput([0.25, 1.5])
         array([ 0.75, -0.5 ])

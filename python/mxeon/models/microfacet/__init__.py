@@ -18,7 +18,7 @@ turn about the normal maps the surface onto itself.
   channel, in [0, 1e50]. A dielectric has one `ior` for all channels, (...); with `ior` 0, the
   reflectance F of the dielectric is 1.
 - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at the angle
-  acos(1/7), and reflectance at grazing, per channel, in [0, 1]; a number is one channel.
+  acos(1/7), and reflectance at grazing incidence, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
 - `retroreflective`: Whether light is reflected back toward its source.
 - `compensate`: Whether to apply the energy compensation. The BRDF without compensation is
@@ -80,7 +80,7 @@ WHITE_CURVE = Curve(lambda c, tint: 1.0 + 0.0 * c[np.newaxis], lambda tint: np.o
 
 @dataclass(frozen=True)
 class Pair:
-    """A Fresnel curve, and a block of directions and roughnesses with components on axis 0."""
+    """Arguments of a microfacet BRDF. Components of directions and roughnesses are on axis 0."""
 
     wo: Array
     wi: Array
@@ -109,7 +109,7 @@ def missing(pair: Pair) -> Array:
     return missing_of(pair.wo, pair.roughness)
 
 
-# For at least MANY views of one roughness, a polynomial in `_series_variables` replaces the
+# For at least MANY directions and one roughness, a polynomial in `_series_variables` replaces the
 # quadrature, unless the last coefficients exceed TAIL. DEGREES are the degrees of the polynomial.
 DEGREES, TAIL = (32, 16), 5e-6
 MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
@@ -117,7 +117,7 @@ MANY = (DEGREES[0] + 1) * (DEGREES[1] + 1)
 
 @lru_cache(maxsize=8)
 def _anisotropic_missing(rows: bytes) -> Array:
-    """(1 - E_ss) / E_ss, shape (N,); `rows` holds x, y, z of the views and both alphas, (5, N)."""
+    """(1 - E_ss) / E_ss, shape (N,); `rows` (5, N) holds x, y, z of wo and both alphas."""
     columns = np.frombuffer(rows).reshape(5, -1)
     E = evaluate_number(
         lambda wo, roughness: slope_nodes(wo, roughness)[1].sum(axis=(0, 1)),
@@ -157,7 +157,7 @@ def _series_variables(wo: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _missing_by_views(rows: Array) -> Array:
-    """(1 - E_ss) / E_ss. Equal views are computed once, and many views by a polynomial."""
+    """(1 - E_ss) / E_ss by one quadrature per direction, or by a polynomial for many directions."""
     wo, alphas = rows[:3], rows[3:]
     uniform = rows.shape[1] >= MANY and not np.ptp(alphas, axis=1).any() and alphas.all()
     if uniform and (series := _series((float(alphas[0, 0]), float(alphas[1, 0])))) is not None:
@@ -180,7 +180,7 @@ def missing_of(wo: Array, roughness: Array) -> Array:
             np.broadcast_to(isotropic, shape).copy(),
             np.broadcast_to(anisotropic, shape),
         )
-        # Views that are mirror images of each other have the same E_ss.
+        # Directions that are mirror images of each other have the same E_ss.
         views = (abs(wo[0]), abs(wo[1]), wo[2])
         rows = [np.broadcast_to(each, shape)[selected] for each in (*views, *roughness)]
         total[selected] = _missing_by_views(np.stack(rows))
@@ -263,7 +263,7 @@ CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
 def _material(
     category: str, inputs: Mapping[str, ArrayLike]
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
-    """Fresnel curve of a node, validated inputs with channels, and validated inputs without."""
+    """Fresnel curve of a node, validated inputs with channels, and without channels."""
     curve, colors, numbers = CATEGORIES[category]
     vectors = arguments.checked_vectors({name: inputs[name] for name in colors})
     return curve, vectors, arguments.checked_all({name: inputs[name] for name in numbers})
@@ -500,7 +500,7 @@ def lobe_albedo(
 
     views = {"wo": wo, "roughness": roughness}
     lead_shape(views | dict(vectors), numbers)  # raises an error that names the arguments
-    # The compensation does not depend on slopes, which add two axes.
+    # The compensation does not depend on the slopes, so one value per direction suffices.
     channels, unseen, average = channel_count(vectors), np.zeros(()), np.zeros(1)
     if compensate:
         unseen = evaluate_number(missing_of, views, {})

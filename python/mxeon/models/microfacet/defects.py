@@ -69,7 +69,7 @@ def fitted_albedo(mu: Array, alpha: Array, F0: Array | float, F90: Array | float
 
 
 def schlick_average(normal: Array, grazing: Array | float) -> Array:
-    """F_ss of a Schlick curve with exponent 5, used by MaterialX for all curves since June 2026."""
+    """F_ss for exponent 5. MaterialX has used this F_ss for all Schlick curves since June 2026."""
     return normal + (grazing - normal) / 21.0
 
 
@@ -101,7 +101,7 @@ def _compensated(F: Factor, lost: Factor) -> Factor:
     return lambda pair: 1.0 + F(pair) * lost(pair)
 
 
-# Energy compensation: `fitted_half` in MaterialX 1.39.5, `averaged_fitted` in later versions.
+# Compensation factors of MaterialX 1.39.5 (`fitted_half`) and later versions (`averaged_fitted`).
 fitted_half = _compensated(_F_half, _missing_by_fit)
 averaged_fitted = _compensated(_F_average, _missing_by_fit)
 
@@ -120,7 +120,7 @@ def _at_the_mean(pair: Pair) -> Array:
 
 
 def _june(pair: Pair) -> Array:
-    """Compensation factor of the June 2026 specification, with E_ss at the mean alpha."""
+    """Compensation factor of the June 2026 specification, with E_ss at sqrt(alpha_x alpha_y)."""
     lost = missing_light(pair.wo[2], ggx.mean_alpha(pair.roughness))
     return 1.0 + pair.curve.average(**pair.material) * lost
 
@@ -154,12 +154,12 @@ MICROFACET_DEFECTS = (
     MicrofacetDefect("alpha_root", "square root of the roughness as alpha", Lobe(alpha=np.sqrt)),
     MicrofacetDefect("no_factor_4", "no factor 4 in the denominator", Lobe(scale=4.0)),
 )
-# Microfacet lobes: FITTED in MaterialX 1.39.5, AVERAGED in later versions.
+# Microfacet lobes of MaterialX 1.39.5 (FITTED) and of later versions (AVERAGED).
 FITTED = Lobe(fitted_half, _at_the_mean)
 AVERAGED = Lobe(averaged_fitted, _at_the_mean)
 MEAN_TITLE = f"{MEAN_ALPHA}, and MaterialX's compensation"
 # The first two lobes are MaterialX's. Each further lobe combines MaterialX's compensation with
-# another error, which renderers may have that copied MaterialX's shaders.
+# another error. Renderers that copied MaterialX's shaders may have both errors.
 FITTED_DEFECTS = (
     MicrofacetDefect("smith_mean_fitted", MEAN_TITLE, FITTED),
     MicrofacetDefect("smith_mean_average", f"{MEAN_TITLE} by F0 and F90", AVERAGED),

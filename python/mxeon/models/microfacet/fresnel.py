@@ -8,7 +8,8 @@ mu = 0 to 1. Section names refer to [MaterialX2026].
 - `ior`, `extinction` (..., C): Complex index of refraction per channel, in [0, 1e50]; a number is
   one channel.
 - `color0`, `color82`, `color90` (..., C): Reflectance r0 along the normal, multiplier at the angle
-  acos(1/7), and reflectance r90 at grazing, per channel, in [0, 1]; a number is one channel.
+  acos(1/7), and reflectance r90 at grazing incidence, per channel, in [0, 1]; a number is one
+  channel.
 - `exponent` (...): Exponent q of the Schlick curve, in [0, 1e50].
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
@@ -30,8 +31,8 @@ from mxeon.models.core.quadrature import unit_rule
 # Cosine at which Hoffman's correction is largest: [MaterialX2026], Generalized Schlick Equations.
 COS_THETA_MAX = 1.0 / 7.0
 
-# LEAST_IOR replaces a smaller index of refraction n in 1 / n. For such an n, F_ss is 1 up to
-# rounding. 1 / LEAST_IOR^3 is finite.
+# An index of refraction n below LEAST_IOR counts as LEAST_IOR in 1 / n, because F_ss is then 1 up
+# to rounding. 1 / LEAST_IOR^3 is finite.
 LEAST_IOR = 1e-50
 
 # Double-exponential quadrature substitutes c = X / (1 + X), where X = exp(pi sinh(t)). The nodes
@@ -52,10 +53,9 @@ def dielectric(mu: Array, ior: Array) -> Array:
 
         F = 1/2 ((g - c) / (g + c))^2 (1 + ((c (g + c) - 1) / (c (g - c) + 1))^2)
 
-    Because (g - c) (g + c) = ior^2 - 1, g - c is computed as (ior^2 - 1) / (g + c). The terms
-    c (g + c) - 1 and c (g - c) + 1 are computed as c g - (1 - c^2) and c g + (1 - c^2).
-    If `ior` is 1, there is no interface, and F is 0 even at grazing, where the published form is
-    0 / 0.
+    Because (g - c) (g + c) = ior^2 - 1, g - c is computed as (ior^2 - 1) / (g + c). The terms c (g
+    + c) - 1 and c (g - c) + 1 are computed as c g - (1 - c^2) and c g + (1 - c^2). If `ior` is 1,
+    there is no interface, and F is 0 even at grazing incidence, where the published form is 0 / 0.
     """
     xp = array_namespace(mu, ior)
     gap = (ior - 1.0) * (ior + 1.0)
@@ -81,9 +81,9 @@ def conductor(mu: Array, ior: Array, extinction: Array) -> Array:
                   = |c w - S2|^2 / |c w + S2|^2
 
     Because (w - c) (w + c) = n^2 - S2 - c^2 = n^2 - 1, R_s is |n^2 - 1|^2 / |w + c|^4. To compute
-    w, let Re = ior^2 - extinction^2 - S2 = a^2 - b^2. The larger of a and b is
-    sqrt((|w^2| + |Re|) / 2). The smaller of a and b follows from a b = ior extinction. F is 0 for
-    n = 1 even at grazing, and 1 for n = 0 even along the normal.
+    w, let Re = ior^2 - extinction^2 - S2 = a^2 - b^2. The larger of a and b is sqrt((|w^2| + |Re|)
+    / 2). The smaller of a and b follows from a b = ior extinction. F is 0 for n = 1 even at grazing
+    incidence, and 1 for n = 0 even along the normal.
     """
     xp = array_namespace(mu, ior, extinction)
     S2 = (1.0 - mu) * (1.0 + mu)
@@ -131,7 +131,8 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
     """F_ss of a conductor, by `_smooth_avg` if F is smooth in the cosine c, else by `_split_avg`.
 
     The square root in F is singular at c^2 = 1 - n^2. For weakly absorbing media, this c is close
-    to the real axis. For strongly absorbing media, F has a pole at a c of size 1 / |n|.
+    to the real axis. For strongly absorbing media, F has a pole near c = 0, at |c| of about 1 /
+    |n|.
     """
     # Some libraries do not support assignment to the elements of an array.
     if array_namespace(ior, extinction) is not arrays.NUMPY:
@@ -151,7 +152,7 @@ def conductor_avg(ior: Array, extinction: Array) -> Array:
 
 def _is_smooth(n2: Array) -> Array:
     """Whether F(c) is smooth: no singularity of F lies near the interval [0, 1] of cosines c."""
-    # F(c) is singular at sqrt(1 - n^2) and at -1 / sqrt(1 + n^2), which may be infinite.
+    # F(c) is singular at sqrt(1 - n^2) and at -1 / sqrt(1 + n^2). Both points may be infinite.
     with np.errstate(divide="ignore", invalid="ignore"):
         points = np.stack([np.sqrt(1.0 - n2), -1.0 / np.sqrt(1.0 + n2)])
     far = np.abs(points) + np.abs(points - 1.0) > 0.5 * (ELLIPSE + 1.0 / ELLIPSE)
@@ -161,9 +162,9 @@ def _is_smooth(n2: Array) -> Array:
 def _smooth_avg(ior: Array, extinction: Array) -> Array:
     """F_ss by Gauss-Legendre, for materials (N,) whose F is smooth in the cosine c.
 
-    `conductor` avoids cancellation, which is negligible for these materials, so a form of F that
-    takes a quarter of the time is used. With a and w of `conductor`, x = c^2, m = |w|^2, u = 2 c a
-    and B = x m + (1 - x)^2, this form is F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
+    For these materials, cancellation is negligible, so F is computed in a form that takes a quarter
+    of the time of `conductor`. With a and w of `conductor`, x = c^2, m = |w|^2, u = 2 c a and B = x
+    m + (1 - x)^2, the form is F = (x + m - u) B / ((x + m + u) (B + u (1 - x)))
     """
     real, squared = (ior - 1.0) * (ior + 1.0) - extinction**2, (2.0 * ior * extinction) ** 2
     total = np.zeros(len(ior))
@@ -269,10 +270,10 @@ def fresnel_dielectric(mu: ArrayLike, ior: ArrayLike) -> Array:
 
     With `ior` 0, which disables the Fresnel curve of the node, the result is 1. For `ior` < 1,
     light comes from the denser medium, and F is 1 beyond the critical angle. For `ior` 1, there is
-    no interface, and F is 0 even at grazing. Accuracy: the relative error is below 2.2e-14 for
-    `ior` >= 1. For `ior` < 1, the slope of F is infinite at the critical angle, so rounding of an
-    argument can change F by more. [MaterialX2026], sections Dielectric Fresnel Equations and
-    dielectric_bsdf.
+    no interface, and F is 0 even at grazing incidence. Accuracy: the relative error is below
+    2.2e-14 for `ior` >= 1. For `ior` < 1, the slope of F is infinite at the critical angle, so
+    rounding of an argument can change F by more. [MaterialX2026], sections Dielectric Fresnel
+    Equations and dielectric_bsdf.
 
         >>> fresnel_dielectric([1.0, 0.5, 0.0], 1.5).round(6)
         array([0.04    , 0.089187, 1.      ])

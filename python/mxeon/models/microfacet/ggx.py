@@ -50,7 +50,7 @@ def ndf(wh: Array, roughness: Array) -> Array:
     (alpha_x, alpha_y), (x, y, z) = roughness, wh
     area = alpha_x * alpha_y
     squared = (alpha_y * x) ** 2 + (alpha_x * y) ** 2 + (area * z) ** 2
-    # For alpha below about 1e-100, alpha^2 underflows to 0, and the surface counts as a mirror.
+    # For alpha below about 1e-81, alpha^4 underflows to 0, and the surface counts as a mirror.
     positive = squared > 0.0
     scale = area / xp.where(positive, squared, 1.0)
     return xp.where(positive, area * scale * scale / np.pi, 0.0)
@@ -255,12 +255,12 @@ def ggx_albedo_dir(mu: ArrayLike, alpha: ArrayLike) -> Array:
     Accuracy: the absolute error is below 1e-10 for alpha >= 1e-4, and below 2e-8 for smaller alpha.
     A surface with alpha 0 is a mirror, for which E_ss is 1, the limit for mu > 0.
 
-    Let u = |wo + wi|^2 = a + b cos(phi) and k = (1 - alpha^2) (mu + mu_i)^2. Then
-    h_z^2 = (mu + mu_i)^2 / u, and the integral of (u / (u - k))^2 over the azimuth phi is
-    elementary. Written with half the sum and half the difference of the elevations of wo and wi,
-    the result contains only sums of positive numbers. The integral over the elevation of wi is
-    computed by quadrature, which is split at the elevation of wo, where the nodes are denser.
-    [MaterialX2026], section Energy Compensation.
+    Let u = |wo + wi|^2 = a + b cos(phi) and k = (1 - alpha^2) (mu + mu_i)^2. Then h_z^2 = (mu +
+    mu_i)^2 / u, and the integral of (u / (u - k))^2 over the azimuth phi is elementary. Written
+    with half the sum and half the difference of the elevations of wo and wi, the result contains
+    only sums of positive numbers. The integral over the elevation of wi is computed by quadrature.
+    The quadrature is split at the elevation of wo, where the nodes are denser. [MaterialX2026],
+    section Energy Compensation.
 
         >>> ggx_albedo_dir([1.0, 0.1], [1.0, 0.01]).round(9)
         array([0.30685282, 0.99412395])
@@ -355,11 +355,11 @@ def _density(e_o: Array, e_i: Array, d: Array, alpha: Array) -> Array:
 
 
 # The table has NODES_S Chebyshev nodes in the cube root of s, and NODES_ALPHA nodes in the square
-# root of alpha. The quadrature for the table has REFINED times as many panels.
+# root of alpha. The quadrature for the table divides each panel into REFINED panels.
 NODES_S, NODES_ALPHA, REFINED, TABLE_BLOCK = 80, 28, 2, 2**12
 
-# For at least MANY cosines and a single alpha, cubics in CELLS cells replace the polynomials. The
-# cubics differ from the polynomials by less than 3e-14. The cubics of CACHED alphas are cached.
+# For at least MANY cosines and a single alpha, cubics on CELLS intervals replace the polynomials.
+# The cubics differ from the polynomials by less than 3e-14. The cubics of CACHED alphas are cached.
 MANY, CELLS, CACHED = 2**14, 2**12, 8
 
 
@@ -367,8 +367,8 @@ def missing_light(mu: Array, alpha: Array) -> Array:
     """(1 - E_ss) / E_ss for valid float64 arrays, which broadcast.
 
     Accuracy: for all mu and alpha in [0, 1], the absolute error is below 1e-10, compared with the
-    quadrature of `mxeon.models.ggx_albedo_dir` with twice as many panels. Many cosines are fastest
-    with a single alpha, because the cosines share one set of cubics.
+    quadrature of `mxeon.models.ggx_albedo_dir` with twice as many panels. Many cosines with a
+    single alpha are fastest, because one set of cubics serves all cosines.
     """
     if array_namespace(mu, alpha) is NUMPY and alpha.size == 1 and mu.size >= MANY:
         return _by_cubics(mu, float(alpha.item()))
@@ -391,13 +391,13 @@ def _interpolated(mu: Array, alpha: Array) -> Array:
 
 
 def _by_cubics(mu: Array, alpha: float) -> Array:
-    """`missing_light` for a single alpha, by one cubic per cell of the cube root of s."""
+    """`missing_light` for a single alpha, by piecewise cubic polynomials in the cube root of s."""
     if alpha <= 0.0:
         return np.zeros(mu.shape)  # a mirror loses no light
     s = np.minimum(mu * (1.0 + alpha) / (mu + alpha), 1.0)
     place = np.cbrt(s)
     place *= CELLS
-    # If `place` is NaN, any cell will do, because the result is NaN.
+    # The index for a NaN in `place` is arbitrary, because the result is NaN.
     cell = np.fmin(place, CELLS).astype(np.int32)
     place -= cell
     *lower, highest = _cubics(alpha)
@@ -410,13 +410,13 @@ def _by_cubics(mu: Array, alpha: float) -> Array:
 
 @lru_cache(maxsize=CACHED)
 def _cubics(alpha: float) -> Array:
-    """Coefficients of a cubic through four points of each cell, shape (4, CELLS + 1)."""
+    """Coefficients of one cubic per interval, through four points, shape (4, CELLS + 1)."""
     powers = chebyshev.chebyshev_polynomials(np.sqrt(alpha), NODES_ALPHA)
     rows = np.einsum("ij,j->i", _table(), powers)
     x = np.sort(chebyshev.chebyshev_nodes(4))
     values = chebyshev.chebyshev_sum(rows, (np.arange(CELLS)[:, np.newaxis] + x) / CELLS)
     cubics = np.linalg.inv(np.vander(x, increasing=True)) @ values.T
-    # The last cell ends at the start of an extra cell, which is evaluated only at the start.
+    # The right end of the last interval belongs to an extra interval with a constant value.
     end = [chebyshev.chebyshev_sum(rows, np.ones(1))[0], 0.0, 0.0, 0.0]
     return np.concatenate([cubics, np.reshape(end, (4, 1))], axis=1)
 

@@ -23,14 +23,14 @@ from mxeon.models.microfacet.ggx import mean_alpha, smith_lambda
 
 # Quadratures have SLOPE_NODES nodes per panel of r, and QUADRANT nodes per quadrant of phi.
 SLOPE_NODES, PANELS, QUADRANT = 20, 3, 20
-# If there is a critical angle: nodes per panel of r, and nodes per azimuth interval.
+# Nodes per panel of r and nodes per azimuth interval, used if there is a critical angle.
 SPLIT_NODES, SPLIT_PART = 28, 32
 
 # Smallest cosine of wo and largest r. Facets with a larger r reflect less than 1e-12 of the light.
 LEAST_MU, LARGEST_R = 1e-12, 1e8
 # Lower limit of `scale`. Facets with a smaller r reflect less than 1e-7 of the light.
 LEAST_SCALE = 3e-4
-# Largest r of refracting facets. Facets beyond r refract at most the fraction 1 / r of the light.
+# Largest r of refracting facets. Facets with a larger r refract at most 1e-12 of the light.
 FARTHEST_R = 1e12
 
 
@@ -65,7 +65,7 @@ class Slopes:
 
     @property
     def scale(self) -> Array:
-        """Width of the steepest part of the integrand, in r and in omega near a right angle."""
+        """Width of the integrand's steepest part, in r and, near right angles, in omega."""
         maximum = array_namespace(self.mu_o, self.steepness).maximum
         return self.mu_o / maximum(self.steepness, self.mu_o)
 
@@ -186,14 +186,14 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
 def refracting_nodes(
     wo: Array, roughness: Array, squared: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """For each node: wo . h, the cosine and stretched length of the refracted wi, and the weight.
+    """wo . h, the cosine of the refracted wi, the stretched length of wi, and the weight of nodes.
 
     With n^2 = 1 - squared and L = |wo + n wi|, the refracted wi = (L h - wo) / n points below the
     horizon if r exceeds the smaller root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.
     """
     slopes = Slopes.seen(wo, roughness)
     mu_o = slopes.mu_o
-    # Split the azimuths where a facet at the critical angle is vertical.
+    # Azimuth intervals end where a facet at the critical angle is vertical.
     omega, weight_omega = _split_azimuths(slopes, wo, squared, _cone_azimuth(mu_o, squared))
     B, _, slope = slopes.rays(omega)
     g = _squared(slope)
@@ -230,7 +230,7 @@ def _transmitting(mu_o: Array, B: Array, g: Array, squared: Array) -> tuple[Arra
     none = ~inside & (~ahead | (b * b < a * d))
     low = xp.where(inside, 0.0, -d / xp.where(ahead, b + size, 1.0))
     falling = xp.where(a < 0.0, (b + size) / xp.where(a < 0.0, -a, 1.0), np.inf)
-    # `size` equals `b` only if alpha is 0.
+    # The divisor `size - b` is 0 only if alpha is 0.
     behind = xp.where(size > b, d / xp.where(size > b, size - b, 1.0), np.inf)
     high = xp.where(ahead, falling, behind)
     return xp.where(none, 0.0, low), xp.where(none, 0.0, high)
@@ -279,7 +279,7 @@ def _cone_azimuth(mu_o: Array, squared: Array) -> Array:
 
 
 def _omega(slopes: Slopes, wo: Array, azimuth: Array) -> Array:
-    """The coordinate omega, in [-pi, pi], of slopes with an azimuth relative to wo."""
+    """Coordinate omega, in [-pi, pi], of slopes whose `azimuth` is relative to wo."""
     xp, upright = array_namespace(wo, azimuth), hypot(wo[0], wo[1]) == 0.0
     x, y = xp.where(upright, 1.0, wo[0]), wo[1]
     cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
@@ -306,7 +306,7 @@ def _piece(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
 def _between(scale: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Nodes and weights in r for [low, high].
 
-    The spacing is proportional to sqrt(r^2 + scale^2), and decreases towards both ends.
+    The spacing is sqrt(r^2 + scale^2) times a factor that decreases towards both ends.
     """
     xp, (t, weight) = array_namespace(scale, low, high), _crowded(PANELS, SPLIT_NODES, low[0])
     first, last = xp.asinh(low / scale), xp.asinh(high / scale)

@@ -76,7 +76,7 @@ def _variant(
     layered: bool = True,
     permitted: bool = False,
 ) -> Variant[Scattering]:
-    """A variant of a combination. If `layered` is false, only the throughput differs."""
+    """A variant of a combination. If `layered` is false, the value is the node's own value."""
     value, _, taken = _values(combine, sheen, colored)
     return Variant(title, value if layered else None, taken, permitted)
 

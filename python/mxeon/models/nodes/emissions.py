@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's EDF nodes and of the nodes that combine EDFs.
 
-Inputs are named by the node's ports. Inputs of nodes that combine emissions, and the color that
-`generalized_schlick_edf` scales, are named by their paths in the graph. If the emission that a
+Inputs have the names of the node's ports. Inputs of nodes that combine emissions, and the color
+that `generalized_schlick_edf` scales, are named by their paths in the graph. If the emission that a
 Schlick curve scales is already evaluated, the input `base` has the radiance (N, 3) of that
 emission.
 """

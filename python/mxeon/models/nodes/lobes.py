@@ -32,11 +32,11 @@ LIMITS = (0.001, 1.0)  # range to which MaterialX clamps every roughness
 def materialx_longitudinal(
     sin_i: Array, cos_i: Array, sin_o: Array, cos_o: Array, v: Array
 ) -> Array:
-    """Longitudinal scattering M_p as in mx_chiang_hair_bsdf.glsl, after an older implementation.
+    """Longitudinal scattering M_p as in mx_chiang_hair_bsdf.glsl.
 
     The series of I_0(x), x = cos_i cos_o / v, stops after ten terms. For x above 12, log I_0(x)
-    contains only half of the term 1 / (8 x). The cosine of a tilted direction keeps the sign, so x
-    may be negative. The series is also used for x below -12. log(2) is rounded to 0.6931.
+    contains only half of the term 1 / (8 x). The cosine of a tilted direction, and so x, may be
+    negative. The series is also used for x below -12. log(2) is rounded to 0.6931.
     """
     a, b = cos_i * cos_o / v, sin_i * sin_o / v
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -172,7 +172,7 @@ def _albedo(wo: Array, inputs: Inputs) -> Array:
 
 
 def _ggx(wo: Array, inputs: Inputs) -> Array:
-    """Albedo of a GGX lobe with the mean roughness and tint, as in MaterialX's GLSL environments."""
+    """Albedo of a GGX lobe with mean roughness and tint, as in MaterialX's GLSL environments."""
     alpha = np.mean([inputs[name] for name in hair.ROUGHNESSES], axis=0)
     alpha = np.sqrt(np.clip(alpha, 1e-6, 1.0).prod(axis=-1, keepdims=True))
     tint = np.mean([inputs[name] for name in TINTS], axis=0)

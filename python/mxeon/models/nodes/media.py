@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of pbrlib's VDF nodes, for one meter of a medium below a surface.
 
-Inputs are named by the node's ports, or by paths in the graph if a node combines two media. The
-specification has no equation for combined media. Here the coefficients of the media are combined,
-because a sum of transmittances would exceed 1.
+Inputs have the names of the node's ports, or of paths in the graph if a node combines two media.
+The specification has no equation for combined media. Here the coefficients of the media are
+combined, because a sum of transmittances would exceed 1.
 """
 
 from __future__ import annotations

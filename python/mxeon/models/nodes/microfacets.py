@@ -2,7 +2,7 @@
 """Rows of pbrlib's microfacet nodes, with and without a thin film, for each scatter mode.
 
 A rasterizer has no light behind the surface and looks up an environment map instead. So for a
-transmitting node, only the share and the direction of the transmitted light can be compared.
+transmitting node, only the fraction and the direction of the transmitted light can be compared.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class MicrofacetLobe:
 
     category: str
     fresnel: Callable[[Array, Inputs], Array]  # Fresnel reflectance F(mu, inputs)
-    edge: str = ""  # input for F at grazing incidence; "" if F is always 1
+    edge: str = ""  # input for F at grazing incidence; "" if this F is always 1
 
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
         """BRDF of the node. With `terms` instead of the specification's lobe, a film is ignored."""
@@ -69,7 +69,7 @@ class MicrofacetLobe:
         return np.asarray(fit * ratio * inputs.get("tint", np.ones(3)))
 
     def indirect(self, wo: Array, inputs: Inputs) -> Array:
-        """Albedo whose compensation uses F at the view direction, as in MaterialX's indirect light."""
+        """Albedo whose compensation uses F(mu_o), as in MaterialX's indirect light."""
         return self._compensated(wo, inputs, self._at_view(wo, inputs))
 
     def averaged(self, wo: Array, inputs: Inputs) -> Array:
@@ -206,7 +206,7 @@ STOCK = Form(
     thin_film.CIE_RGB, 2, True, 1.0, 0.01
 )  # MaterialX's choices, but with the full reflectance of a Schlick substrate
 MIXED = Form(mixed=True)
-# Forms of the thin-film model, with title and whether the specification permits the form.
+# Forms of the thin-film model. A row has a title, a form, and whether the form is permitted.
 FORMS = (
     ("MaterialX's matrix, orders and mixed channels", STOCK, True),
     ("half of the substrate's reflectance, and MaterialX's choices", thin_film.MATERIALX, False),
@@ -223,7 +223,7 @@ def _bare(inputs: Inputs) -> dict[str, Array]:
 
 
 def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: Inputs) -> Array:
-    """Albedo in MaterialX's environment, compensated with F at the view or with an average F."""
+    """Albedo in MaterialX's environment, compensated with F(mu_o) or with an average F."""
     mu = np.ones(len(wo)) if averaged else np.minimum(wo[:, 2], 1.0)
     F = thin_film.film_reflectance(category, mu, inputs, form)
     F = defects.schlick_average(F, 1.0) if averaged else F
@@ -232,7 +232,7 @@ def _environment(category: str, form: Form, averaged: bool, wo: Array, inputs: I
 
 
 def _fitted(lobe: MicrofacetLobe, form: Form, wo: Array, inputs: Inputs) -> Array:
-    """MaterialX's albedo in the throughput: the bare lobe's fit, compensated with F of the film."""
+    """MaterialX's albedo in the throughput. Only the compensation factor depends on the film."""
     F = thin_film.film_reflectance(lobe.category, np.minimum(wo[:, 2], 1.0), inputs, form)
     albedo = layer_albedo(wo, inputs, *lobe.ends(wo, inputs), F)
     return averaged_channels(albedo) if lobe.edge else albedo
@@ -305,8 +305,8 @@ MODES = ("T", "RT")
 class Transmission:
     """Functions that evaluate a transmitting node for given inputs.
 
-    - `passed`: Share of the light from wo that the BTDF transmits, tint included. If the third
-      argument, `shadow`, is false, the share is the mean of 1 - F over the visible facets.
+    - `passed`: Fraction of the light from wo that the BTDF transmits, tint included. If the third
+      argument, `shadow`, is false, the fraction is the mean of 1 - F over the visible facets.
     - `reflected`: Directional albedo of the reflection, with compensation and without tint.
     """
 

@@ -121,9 +121,9 @@ class PbrNode(Node[Scattering]):
     - `albedo`: Directional albedo E for weight 1, tints included, clamped to 1.
     - `integral`: Integral of `value`, if this integral differs from `albedo` for some inputs.
     - `fixed`: Inputs that select the mode.
-    - `layerable`: Whether the share 1 - E of the light passes to the layer below, where E is the
+    - `layerable`: Whether the fraction 1 - E of the light passes to the layer below, where E is the
       albedo at `white` inputs. An opaque node of weight 1 passes no light.
-    - `taken`: The albedo E in the share 1 - E, if E is not `albedo` at `white` inputs.
+    - `taken`: The E of `layerable`, if E is not `albedo` at `white` inputs.
     - `transmits`: Whether the node scatters light from below the horizon instead of from above.
     - `mirror`: Inputs for which the node reflects all light, or empty if there are no such inputs.
     - `parameters`: Inputs of the mode, if names or quantities differ from the category's inputs.

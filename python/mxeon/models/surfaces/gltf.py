@@ -66,7 +66,7 @@ def alphas(p: Parameters) -> Array:
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
-    """Scattered light, (N, 3): f cos(theta_i) in sunlight, or the response to a white environment."""
+    """Scattered radiance, (N, 3): f cos(theta_i), or the radiance in a white environment."""
     plain = Frame(p["normal"], p["tangent"])
     sign = -1.0 if "rotation clockwise" in but else 1.0
     frame, alpha = plain.turned(sign * p["anisotropy_rotation"]), alphas(p)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lobes under one light, from which surface shaders are built.
+"""The lobes of surface shaders under one light.
 
-Parameters are a mapping by the specification's names. Numbers have shape (N, 1) and colors (N, 3),
-or (1, 1) and (1, 3) for all points. Directions (N, 3) are unit vectors in the frame of the
-geometric normal, above the horizon.
+Parameters are a mapping from the specification's names to values. Numbers have shape (N, 1) and
+colors (N, 3), or (1, 1) and (1, 3) for all points. Directions (N, 3) are unit vectors in the frame
+of the geometric normal, above the horizon.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Light:
     behind: bool = False
 
     def response(self, lobe: PbrNode, frame: Frame = PLAIN, **inputs: ArrayLike) -> Array:
-        """Light that a lobe reflects to the viewer, (N, 3): f cos(theta_i), or E in an environment."""
+        """Radiance that a lobe reflects, (N, 3): f cos(theta_i), or E in an environment."""
         if self.wi is None:
             return np.zeros(self.wo.shape) if self.behind else self.albedo(lobe, frame, **inputs)
         wo, wi = (frame.local(self.wo, each) for each in (self.wo, self.wi))
@@ -101,19 +101,19 @@ class Light:
     def layered(
         self, lobe: PbrNode, frame: Frame, weight: Array | float, base: Array, **inputs: ArrayLike
     ) -> Array:
-        """Light of a lobe layered over `base` by albedo scaling: weight f + (1 - weight E) base."""
+        """A lobe layered over `base` by albedo scaling: weight f + (1 - weight E) base."""
         if not np.any(weight):
             return base
         f, E = self.both(lobe, frame, **inputs)
         return weight * f + (1.0 - weight * E) * base
 
     def through(self, share: ArrayLike) -> Array:
-        """Refracted light, (N, 3): the fraction `share` of the environment behind the surface."""
+        """Refracted radiance, (N, 3), from an environment: the fraction `share` of the light."""
         light = 1.0 if self.behind else 0.0
         return np.broadcast_to(light * np.asarray(share), self.wo.shape)
 
     def diffused(self, share: ArrayLike) -> Array:
-        """Light diffusely transmitted from the other side, (N, 3), which is 0 for a distant light."""
+        """Radiance diffusely transmitted from the other side, (N, 3). A distant light adds 0."""
         light = 1.0 if self.wi is None and not self.behind else 0.0
         return np.broadcast_to(light * np.asarray(share), self.wo.shape)
 

@@ -10,7 +10,7 @@ The coat absorbs along the refracted path, T_coat = coat_color^((1/mu_i + 1/mu_o
 also darkens the base by Delta = (1 - K) / (1 - E_base K), K = lerp(F(mu_o), 1 - (1 - <F>) / eta^2,
 r_base), and increases the roughness of the base's lobes to r'^4 = r^4 + 2 r_coat^4. On a plane,
 f_SSS is the Lambertian lobe with the specified color. In a rasterizer's environment, f_T is the
-share `transmission_color` of the light, and T_coat is the coat's color at normal incidence.
+fraction `transmission_color` of the light, and T_coat is the coat's color at normal incidence.
 
 Each name in the argument `but` replaces a formula. `mxeon.conformance.specs.surface_texts` states
 which of these replacements the specification permits. [OpenPBR2026].
@@ -87,14 +87,14 @@ def alphas(roughness: Array, anisotropy: Array) -> Array:
 
 
 def base_alphas(p: Parameters) -> Array:
-    """alphas of the base. Below a coat of roughness r_coat, r^4 grows by 2 r_coat^4, up to 1."""
+    """alphas of the base. A coat of roughness r_coat raises r^4 to min(1, r^4 + 2 r_coat^4)."""
     r, coat = p["specular_roughness"], p["coat_roughness"]
     rough = np.minimum(1.0, r**4 + 2.0 * coat**4) ** 0.25
     return alphas(lerp(r, rough, p["coat_weight"]), p["specular_roughness_anisotropy"])
 
 
 def specular_eta(p: Parameters) -> Array:
-    """The base's relative index of refraction below the coat, inverted if the coat's is larger."""
+    """Relative index of refraction of the base. Below a coat, an index less than 1 is inverted."""
     below = p["specular_ior"] / p["coat_ior"]
     return lerp(p["specular_ior"], np.maximum(below, 1.0 / below), p["coat_weight"])
 
@@ -129,7 +129,7 @@ def darkening(light: Light, p: Parameters, but: Collection[str]) -> Array:
 
 
 def coat_transmittance(light: Light, p: Parameters, but: Collection[str]) -> Array:
-    """T_coat, the share of the light that passes twice through the coat's medium."""
+    """T_coat, the fraction of the light that remains after two passes through the coat's medium."""
 
     def path(mu: Array) -> Array:
         return 1.0 / np.sqrt(1.0 - (1.0 - np.square(mu)) / np.square(p["coat_ior"]))
@@ -140,7 +140,7 @@ def coat_transmittance(light: Light, p: Parameters, but: Collection[str]) -> Arr
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
-    """Scattered light, (N, 3): f cos(theta_i), or the response to a white environment."""
+    """Scattered radiance, (N, 3): f cos(theta_i), or the radiance in a white environment."""
     frames = Frame(p["geometry_normal"], p["geometry_tangent"])
     coat_frame = Frame(p["geometry_coat_normal"], p["geometry_coat_tangent"])
     F, C, M = p["fuzz_weight"], p["coat_weight"], p["base_metalness"]

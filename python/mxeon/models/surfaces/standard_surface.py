@@ -83,7 +83,7 @@ def alphas(roughness: Array, anisotropy: Array) -> Array:
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
-    """Scattered light, (N, 3): f cos(theta_i), or the response to a white environment."""
+    """Scattered radiance, (N, 3): f cos(theta_i), or the radiance in a white environment."""
     turn = -2.0 * np.pi if "rotation clockwise" in but else 2.0 * np.pi
     frame = Frame(p["normal"], p["tangent"]).turned(turn * p["specular_rotation"])
     coat_frame = Frame(p["coat_normal"], p["tangent"]).turned(turn * p["coat_rotation"])

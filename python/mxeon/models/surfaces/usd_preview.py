@@ -45,7 +45,7 @@ parameters = partial(lobes.filled, {**DEFAULTS, **FRAME})
 
 
 def surface(light: Light, p: Parameters, but: Collection[str] = ()) -> Array:
-    """Scattered light, (N, 3): f cos(theta_i), or the response to a white environment."""
+    """Scattered radiance, (N, 3): f cos(theta_i), or the radiance in a white environment."""
     frame = Frame(p["normal"], np.array([[1.0, 0.0, 0.0]]))
     alpha = np.repeat(np.square(p["roughness"]), 2, axis=1)
     metallic, color, specular = p["metallic"], p["diffuseColor"], p["useSpecularWorkflow"] != 0.0
