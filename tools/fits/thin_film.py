@@ -9,8 +9,8 @@ script prints the largest errors for cosines of at least 0.1 and for films of up
 kind of substrate.
 
 A check measures the root mean square error of a set of random films. The tolerance of the check is
-the largest root mean square error of other random sets, and is at most a third of the largest error of
-a film. So the check can detect a digit that changes every film by less than the largest error.
+the largest root mean square error of other sets, and is at most a third of the largest error of a
+film. So the check can detect a wrong digit that changes every film by less than the largest error.
 """
 
 import numpy as np

@@ -37,7 +37,7 @@ def in_percent(share: float) -> str:
 
 
 def brief(difference: Difference) -> str:
-    """Largest difference of a picture, and the share of the object that visibly differs.
+    """Largest difference of a picture, and the fraction of the object that visibly differs.
 
     >>> brief(Difference("back", 0.2035, False, 0.124))
     '+20 %, visible on 12 %'
@@ -50,6 +50,6 @@ def brief(difference: Difference) -> str:
 
 
 def with_block(page: str, name: str, text: str) -> str:
-    """A page in which the text between the comments `name` and `end` is replaced."""
+    """The page with `text` between the comments `name` and `end`."""
     block = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.DOTALL)
     return block.sub(lambda found: found[1] + text + found[2], page)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes OSL versions of GLSL files and generated tables of pages: `python -m tools.site`.
 
-The command needs no rendering engine. Separate commands in `tools.site` make measurements on hosts,
-and pictures.
+The command needs no renderer. Other commands in `tools.site` measure hosts or draw pictures.
 """
 
 from pathlib import Path

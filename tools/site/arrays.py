@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Updates the list of functions in docs/arrays.md that accept no arrays of PyTorch or JAX."""
+"""Updates the list in docs/arrays.md of functions that accept no arrays of PyTorch or JAX."""
 
 import inspect
 import re

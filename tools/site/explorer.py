@@ -10,7 +10,7 @@ from mxeon.io.files import write_text
 from tools.site import DOCS
 
 PICTURE = DOCS / "images" / "explorer.png"
-PAGES = "upstream/{}.html"  # ledger pages, relative to the explorer in the built site
+PAGES = "upstream/{}.html"  # path of a ledger page, relative to the built explorer
 SIZE = {"width": 1280, "height": 900}
 
 
@@ -31,7 +31,7 @@ def main() -> None:
         tab = browser.new_page(viewport=SIZE)
         tab.goto(file.as_uri())
         tab.get_by_text("shader, float32").first.wait_for()
-        tab.wait_for_timeout(5000)  # the explorer smooths edges over time
+        tab.wait_for_timeout(5000)  # the explorer needs time to smooth edges
         tab.screenshot(path=PICTURE)
         browser.close()
 

@@ -34,7 +34,7 @@ from mxeon.survey.field_page import INPUTS, SCENES, Frame, frames, render
 DATA = Path(__file__).with_name("field.json")
 PICTURES = DATA.with_suffix(".webp")  # portraits and difference maps, ACROSS per row
 SIZE, ACROSS = 96, 8
-PAGES = "upstream/{}.html"  # ledger pages, relative to field.html in the built site
+PAGES = "upstream/{}.html"  # path of a ledger page, relative to the built field.html
 EXAMPLE = examples_folder() / "clay.mtlx"
 DIFFUSE = tuple(dict.fromkeys(row.node for row in (*DIFFUSE_SPECS, *SURFACE_LOBES)))
 LIBRARIES = ("eonlib", "stock")
@@ -56,7 +56,7 @@ class Row:
 
 
 def read() -> tuple[list[Row], Iterator[NDArray[np.uint8]]]:
-    """The stored rows, with a portrait and a difference map for each row and scene."""
+    """The stored rows, and two pictures for each row and scene: portrait and difference map."""
     rows = make_converter().structure(json.loads(DATA.read_text(encoding="utf-8")), list[Row])
     lines = np.asarray(Image.open(PICTURES)).reshape(-1, SIZE, ACROSS, SIZE, 3)
     return rows, iter(lines.swapaxes(1, 2).reshape(-1, SIZE, SIZE, 3))
@@ -135,7 +135,7 @@ def pixels(uri: str) -> NDArray[np.uint8]:
 
 
 def essential(entry: Entry) -> Entry:
-    """A copy of an entry with the fields that the page shows."""
+    """A copy of an entry with only the fields that the page shows."""
     cells = {
         column: replace(
             cell,

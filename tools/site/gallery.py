@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders the materials in `examples/` with stock MaterialX and eonlib, and writes gallery.md.
 
-python -m tools.site.gallery    writes pictures, differences between libraries, and gallery.md
+    python -m tools.site.gallery
 """
 
 import json
@@ -29,10 +29,10 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-# Description and size of stock MaterialX's largest difference from the reference, by material.
+# By material, description and size of stock MaterialX's largest difference from the reference.
 DIFFERENCES = PICTURES / "differences.json"
 SIZE = 512  # width and height of a picture in pixels
-INSET, EDGE = 112, 8  # width of the inset, and distance from the edge, in pixels
+INSET, EDGE = 112, 8  # width of the inset and distance from the edges, in pixels
 QUALITY = 85  # WebP quality
 ROWS = 96  # height of the studio's latitude-longitude map in pixels
 # A soft box has an azimuth relative to the viewer, an elevation, a half width and a half height in
@@ -99,9 +99,9 @@ def studio():
 
 
 def pictures(host, document):
-    """For each material, the name, the pictures, and the difference between stock and eonlib.
+    """Yield each material's name, the pictures with stock MaterialX and eonlib, and the difference.
 
-    The pictures are made with stock MaterialX, if possible, and with eonlib.
+    If stock MaterialX cannot generate the shaders, the only picture is with eonlib.
     """
     shaders, scene = [], replace(STUDIO, size=SIZE)
     if "furnace" in document.stem:
@@ -119,7 +119,7 @@ def pictures(host, document):
 
 
 def sphere_picture(image):
-    """A picture of a sphere with SIZE pixels and a margin of background."""
+    """A picture of a sphere, SIZE pixels wide including a margin of background."""
     mask = visible(len(image), "sphere").mask[..., None]
     codes = np.where(mask, srgb_encoded(image), np.uint8(BACKGROUND))
     inner = SIZE - SIZE // 8
@@ -135,7 +135,7 @@ def label(image, place, text, size=22, anchor="ls"):
 
 
 def save(path, pictures, difference_map):
-    """Save pictures side by side. Two pictures get labels, and the difference as an inset."""
+    """Save pictures side by side, with an inset that shows a visible difference."""
     image = Image.new("RGB", (SIZE * len(pictures), SIZE))
     for number, each in enumerate(pictures):
         image.paste(each, (number * SIZE, 0))
@@ -167,7 +167,7 @@ def render():
 
 
 def judge():
-    """Write the differences that `mxeon check` finds for materials with stock MaterialX."""
+    """Write the differences that `mxeon check` finds between stock MaterialX and the reference."""
     found = {}
     for each in mxeon.check(sorted(EXAMPLES.glob("*.mtlx")), ["gl"], ["stock"]).results:
         if each.check == "picture" and (differs := each.difference):
@@ -178,7 +178,7 @@ def judge():
 
 
 def page():
-    """Markdown of the gallery. The largest differences come first."""
+    """Markdown of the gallery, sorted by decreasing difference."""
     found = json.loads(DIFFERENCES.read_text(encoding="utf-8"))
     equal = [name for name, (description, _) in found.items() if not description]
     sections = []

@@ -55,7 +55,7 @@ def on_page_content(html, page, **_):
 
 
 def _halves(found):
-    """HTML that splits a side-by-side picture into halves. Other pictures are unchanged."""
+    """HTML that splits a side-by-side picture into halves, or unchanged HTML of another picture."""
     width, height = Image.open(ROOT / "docs" / found[2]).size
     if width != 2 * height:
         return found[0]

@@ -41,7 +41,7 @@ STYLE = {
 
 
 def quartic_loss(mu):
-    """1 - E of FON at roughness 1 by the quartic of [Portsmouth2025], Eq. (14)."""
+    """1 - E of FON at roughness 1, computed with the quartic of [Portsmouth2025], Eq. (14)."""
     one, (a, b, c, d) = np.float32(1.0), np.float32(FON_G)
     m = one - mu
     G = m * (a + m * (b + m * (c + m * d)))
@@ -49,7 +49,7 @@ def quartic_loss(mu):
 
 
 def closed_loss(mu):
-    """1 - E of FON at roughness 1 by the closed form of H."""
+    """1 - E of FON at roughness 1, computed with the closed form of H."""
     one = np.float32(1.0)
     S = np.sqrt((one - mu) * (one + mu))
     t = mu / (one + S)
@@ -59,7 +59,7 @@ def closed_loss(mu):
 
 
 def fitted_loss(mu):
-    """1 - E of FON at roughness 1 by the polynomials in the shaders."""
+    """1 - E of FON at roughness 1, computed with the polynomials in the shaders."""
     p, q = (np.float32(shipped("eon", "EON", each)) for each in "PQ")
     return loss_fit.fitted(mu, p, q) / (np.float32(1.0) + np.float32(C1))
 
@@ -79,9 +79,9 @@ def loss_errors(mu):
 
 
 def loss_figures():
-    """Largest absolute and relative errors of 1 - E.
+    """Largest absolute and relative errors of 1 - E over all float32 cosines from 1e-6 to 1.
 
-    Cosines are all float32 numbers from 1e-6 to 1. The paper's formulas use 4001 of these cosines.
+    The paper's formulas are evaluated at only 4001 of these cosines.
     """
     mu = np.unique(np.geomspace(1e-6, 1.0, 4001).astype(np.float32))
     errors, exact = loss_errors(mu)
@@ -139,7 +139,7 @@ def fresnel_errors(mu, alpha, ior=GLASS):
 
 
 def largest_figures():
-    """Largest variances of samplers, and errors of E_ss and of a dielectric's albedo."""
+    """Largest variances of samplers, and largest and mean errors of E_ss and of an albedo."""
     mu = np.append(0.01, np.linspace(0.05, 1.0, 20))
     found = {
         f"{name} {r}": variances(name, r, mu).max()
@@ -163,7 +163,7 @@ def largest_figures():
 
 
 def energy_rows():
-    """Table rows with an equation, an interpretation, and the albedos of a white surface."""
+    """Yield an equation, the interpretation of the equation, and albedos of a white surface."""
     mu = VIEWS
     wo = np.stack([np.sqrt((1.0 - mu) * (1.0 + mu)), 0.0 * mu, mu], axis=-1)
     E = models.ggx_albedo_dir(mu, 1.0)
@@ -171,7 +171,7 @@ def energy_rows():
         function(wo, 1.0, ROUGH, GLASS)[:, 0]
         for function in (dielectric_albedo_dir, transmission.dielectric_transmittance_dir)
     )
-    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # views in the planes of both tangents
+    around = np.concatenate([wo, wo[:, [1, 0, 2]]])  # directions in the planes of both tangents
     yield "Microfacet BRDF, F = 1, alpha 1", "as it is", E
     compensated = dielectric_albedo_dir(wo, 1.0, ROUGH, 0.0)  # IOR 0 means total reflection
     yield "", "times 1 + F_ss (1 - E_ss) / E_ss", compensated

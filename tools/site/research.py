@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Updates docs/research.md with the output of the first example on that page."""
+"""Updates the output of the first example in docs/research.md."""
 
 import contextlib
 import io

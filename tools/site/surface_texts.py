@@ -33,7 +33,7 @@ NAMES = tuple(name for name, _ in groupby(SENTENCES, lambda spec: spec.node))
 OPTIONS = [word for name in NAMES for word in ("--node", name)]
 
 TRANSPORT = "the renderer computes light inside the object; path tracers only receive the medium"
-# Statements without a check. Rows have specification, section, statement and reason.
+# Statements that no check covers. A row has specification, section, statement and reason.
 # fmt: off
 NOT_JUDGED = (
     (OPENPBR, "Subsurface", "radius, scale, anisotropy and the inversion of the albedo", TRANSPORT),
@@ -58,7 +58,7 @@ NOT_JUDGED = (
 def rows(
     text: Text, results: Mapping[str, Mapping[str, Result]], verdicts: Verdicts
 ) -> Iterator[str]:
-    """Table rows of a specification, with the verdict on gl and any differing verdicts."""
+    """Table rows of a specification, with the verdict on gl and verdicts that differ elsewhere."""
     for spec in (each for each in SENTENCES if each.text is text):
         places: dict[str, list[str]] = defaultdict(list)
         for place, verdict in verdicts[spec.title].items():
@@ -74,7 +74,7 @@ def rows(
 
 
 def actual_form(result: Result) -> str:
-    """The formula that a shader uses instead of the specified formula, with the error, or ""."""
+    """The formula and the error of a shader that does not pass, or "" if the shader passes."""
     if result.verdict == PASSED:
         return ""
     cause = result.diagnosis.first

@@ -3,8 +3,7 @@
 
 The command runs `mxeon check --host gl --node all` and the checks of all surface shaders'
 specifications with each version, in 14 minutes of processor time. Results are stored in
-`ledger/versions.json`, from which `python -m tools.site` writes versions.md and the site adds lines
-to the ledger's pages.
+`ledger/versions.json`, and are shown in versions.md and on the ledger's pages.
 """
 
 import json
@@ -25,10 +24,10 @@ COMMAND = ("--node", "all", *surface_texts.OPTIONS, "--library", "eonlib", "--li
 
 
 def record(versions):
-    """Data for pages of the site, computed from the results in `versions`, by version.
+    """Data for pages of the site, computed from the results of each version.
 
-    - `nodes`: Number of results by library, version, node and verdict, except verdicts on sentences
-      of specifications, which surfaces.md has.
+    - `nodes`: Number of results by library, version, node and verdict, except the results of checks
+      of specifications.
     - `open`: Subjects of checks that eonlib does not pass, by version, check and verdict.
     - `pages`: Whether all checks of a ledger page pass, by page and version, for pages about
       MaterialX that need no host except gl.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes wall.md, which shows materials in all renderers, from the reports of `mxeon check`.
+"""Writes wall.md, a page with pictures of materials in all renderers.
 
 python -m tools.site.wall REPORT...    REPORT is a folder written by `mxeon check --report`
 """
@@ -82,7 +82,7 @@ class Tile(NamedTuple):
     scene: str
     image: NDArray[np.floating]
     difference: Difference
-    cause: str  # a text in HTML
+    cause: str  # HTML
     verdict: str  # also the CSS class of the figure
 
     @property
@@ -148,7 +148,7 @@ def figure(
 
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
-    """HTML of the reference and the tiles, sorted by difference. Equal captions share a tile."""
+    """HTML of the reference and the tiles, sorted by difference. Hosts with equal captions share a tile."""
     groups: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
         groups[each.caption, each.verdict].append(each)
@@ -239,7 +239,7 @@ class Wall:
         )
 
     def rough(self) -> str:
-        """Section about rough diffuse nodes, without repeated pictures of a renderer."""
+        """Section about rough diffuse nodes. Equal pictures of a renderer appear only once."""
         reference = pixels(self.references[PORTRAIT, EON, BACK.name])
         tiles: dict[tuple[str, float], Tile] = {}
         for each in self.images:
@@ -251,7 +251,7 @@ class Wall:
 
     @cached_property
     def materials(self) -> list[tuple[str, str]]:
-        """Materials drawn by more than half as many hosts as the material that most hosts draw."""
+        """Materials with more than half as many hosts as the material with the most hosts."""
         hosts = defaultdict(set)
         for document, element, _, host, _ in self.images:
             if document != PORTRAIT:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements and patches for the ledger of defects in MaterialX and renderers.
 
-Each defect has a page in `docs/upstream`, with the latest results in `measured.json`. Repairs are
-commits in `patches/`, whose messages name the page.
+Each defect has a page in `docs/upstream`, with the latest results in `measured.json`. The folder
+`patches/` has a patch for each repair. The commit message of a patch names the page.
 
     python -m tools.site.ledger.measure [HOST ...]  repeats the measurements
     python -m tools.site.ledger.pictures            draws the pages' pictures
@@ -28,17 +28,17 @@ MEASURED = FOLDER / "measured.json"
 
 
 def measured() -> dict[str, Any]:
-    """The stored measurements by page: rows of the table, host, versions and diagnosis."""
+    """The stored measurements by page, with rows of the table, host, versions and diagnosis."""
     return dict(json.loads(MEASURED.read_text(encoding="utf-8")))
 
 
 def write_measured(found: dict[str, Any]) -> None:
-    """Write measurements and the shortest changes of patches to `measured.json`."""
+    """Write measurements, and the shortest change in each patch, to `measured.json`."""
     write_text(MEASURED, dumped(dict(sorted(with_patches(found).items())), 1) + "\n")
 
 
 def dumped(found: Any, depth: int) -> str:
-    """JSON text in which entries of the outer `depth` levels have separate lines."""
+    """JSON text with a line for each entry in the outer `depth` levels."""
     if depth == 0 or not isinstance(found, dict):
         return json.dumps(found)
     lines = (f"{json.dumps(name)}: {dumped(each, depth - 1)}" for name, each in found.items())
@@ -46,7 +46,7 @@ def dumped(found: Any, depth: int) -> str:
 
 
 def with_patches(found: dict[str, Any]) -> dict[str, Any]:
-    """Measurements with each patch's shortest change, which identifies patched MaterialX."""
+    """Add each patch's shortest change to the measurements, to recognize patched MaterialX."""
     return found | {
         page: found[page] | {"patch": _shortest_change(path.read_bytes().decode())}
         for page, path in patches("materialx").items()
@@ -89,12 +89,12 @@ def patches_of(page: str) -> list[Path]:
 
 
 def own_diff(page: str) -> str:
-    """The diff in the text of a page, or "" if the page has none."""
+    """The diff in the text of a page, or "" if the page has no diff."""
     return "".join(re.findall(r"(?ms)^```diff\n(.*?)^```", issues()[page].text))
 
 
 def needed(page: str) -> set[str]:
-    """A page, and all pages whose patches the page's patch requires, directly or indirectly."""
+    """A page, and all pages whose patches must be applied before the page's patch."""
     found = {page}
     while more := {each for name in found for each in issues()[name].needs} - found:
         found |= more
@@ -102,16 +102,16 @@ def needed(page: str) -> set[str]:
 
 
 def linked(source: Path, target: Path) -> Path:
-    """Copy a folder as links to the original files."""
+    """Make the folder `target` with links to the files in `source`."""
     ignored = shutil.ignore_patterns("__pycache__", "*.d.ts", "*.map")
     shutil.copytree(source, target, copy_function=os.symlink, ignore=ignored)
     return target
 
 
 def apply(folder: Path, *diffs: Path | str, strip: int = 1) -> Path:
-    """Apply patches, given as paths or diffs, to a folder of files or links, and return the folder.
+    """Apply patches, given as paths or as diffs, to a folder, and return the folder.
 
-    `strip` is the number of leading path components that are dropped.
+    Patched copies replace links. `strip` is the number of leading path components that are dropped.
     """
     # Make git ignore the machine's configuration and any repository around the folder.
     alone = {"GIT_CEILING_DIRECTORIES": str(folder.resolve().parent), "GIT_CONFIG_NOSYSTEM": "1"}

@@ -25,7 +25,7 @@ OWN_NODES = ("three", "babylon", "shadewire", "three-gpu-pathtracer")
 
 
 def judged(host: str, rows: Collection[Row] = (), library: str = STOCK) -> tuple[list[Result], str]:
-    """Results of the checks in `rows` on a host or "source", and a text with device and versions.
+    """Results of the checks in `rows` on a host or "source", and names of the device and versions.
 
     By default, `rows` are all rows of pages about `host` and `library`. STOCK includes a renderer's
     own nodes.

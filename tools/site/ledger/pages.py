@@ -53,7 +53,7 @@ def entries() -> str:
 
 
 def filled(name: str, text: str) -> str:
-    """Complete Markdown of a ledger page or of the index README."""
+    """Markdown of a ledger page or of the index, README, with tables in place of placeholders."""
     if name == "README":
         text = text.replace("<!-- entries -->", entries())
         return PLACEHOLDER.sub(lambda found: patch_table(found[1]), text)
@@ -71,12 +71,12 @@ def filled(name: str, text: str) -> str:
 
 
 def table(issue: Issue) -> str:
-    """Markdown table of a page's measurements, with a diagnosis of the first row."""
+    """Markdown with a table of a page's measurements and the diagnosis of the first row."""
     if not issue.rows or not issue.cause:
         return ""
     found = measured()[issue.page]
     diagnosis = words.diagnosis(Diagnosis((issue.cause,)))
-    if "next" in found:  # the second-best model
+    if "next" in found:  # the model with the second smallest difference
         diagnosis += f", then {found['next']}"
     first = " (first row)" if issue.rows[1:] else ""
     lobes = ", and the lobes of eonlib" if issue.library == EONLIB else ""
@@ -92,7 +92,7 @@ def table(issue: Issue) -> str:
 
 
 def short_diff(patch: Path) -> tuple[str, int]:
-    """The first LINES changed lines of a patch, and the number of further changed lines."""
+    """The first LINES changed lines of a patch, and the number of omitted changed lines."""
     lines: list[str] = []
     count, follows = 0, False
     for line in patch.read_text(encoding="utf-8").split("\n---\n", 1)[1].splitlines():
@@ -110,7 +110,7 @@ def short_diff(patch: Path) -> tuple[str, int]:
 
 
 def outcome(issue: Issue) -> str:
-    """Sentence on which checks pass and which checks fail after a page's patch is applied."""
+    """Sentence about the checks that pass, or still fail, after a page's patch is applied."""
     checks: dict[tuple[str, str, str], list[str]] = defaultdict(list)
     for check, subject in issue.repaired:
         checks[subject, "passes", "pass"].append(f"`{check}`")

@@ -3,7 +3,7 @@
 
     python -m tools.site.ledger.tables MaterialX.PBRSpec.md
 
-The figures in docs/upstream/pbrlib_tables.md are from this output.
+The numbers in docs/upstream/pbrlib_tables.md are from the output of this script.
 """
 
 import re
@@ -15,7 +15,7 @@ import MaterialX as mx
 from mxeon.shaders.library import load_library
 
 GROUP = "pbr"  # nodegroup of the nodes in the specification
-NONE = ("", "__zero__", "__empty__")  # default values that stand for no default
+NONE = ("", "__zero__", "__empty__")  # attribute values that mean that there is no default
 KEYS = ("type", "default", "accepted values")  # compared columns
 Port = dict[str, object]
 
@@ -67,7 +67,7 @@ def interval(least: str, most: str) -> str:
 
 
 def value(text: str) -> object:
-    """A default as a text or a tuple of numbers. Equal numbers are reduced to one number."""
+    """A default as text, or as a tuple of numbers. Equal numbers are reduced to one number."""
     try:
         numbers = tuple(map(float, text.split(",")))
     except ValueError:
@@ -76,7 +76,7 @@ def value(text: str) -> object:
 
 
 def accepted(text: str) -> object:
-    """Accepted values: a range as brackets and ends, or a set of names."""
+    """The brackets and the ends of an accepted range, or the set of accepted names."""
     text = text.replace(" ", "").replace("∞", "inf")
     if text.startswith(("[", "(")):
         return text[0], text[-1], *map(value, text[1:-1].split(","))
