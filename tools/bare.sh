@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Runs README's commands on a bare machine: a minimal Debian with Python, venv, git and a clone of this commit.
-# It needs root and the Debian package mmdebstrap.
+# The script needs root privileges and the Debian package mmdebstrap.
 # usage: tools/bare.sh [--all] [--keep FOLDER] [--copy PATH]...
 #   --all          also run every test, build eonlib's archive, and install the package with pip
-#   --keep FOLDER  use the root in FOLDER, which is made if it does not exist
-#   --copy PATH    copy PATH into the root: pip's configuration, certificates, wheels
+#   --keep FOLDER  install the machine in FOLDER, or reuse the machine in FOLDER
+#   --copy PATH    copy PATH to the machine, such as pip's configuration, certificates or wheels
 set -eu
 top=$(cd "$(dirname "$0")/.." && pwd)
 root="" all="" copies=""
@@ -22,7 +22,7 @@ options() {
 }
 options "$@"
 
-# Print the commands to run in the root: the first block of README and, with --all, more.
+# Print the commands to run on the machine. --all adds commands to the first block of README.
 commands() {
     sed -n '/^```sh$/,/^```$/p' "$top/README.md" | sed '1d; /^```$/,$d'
     [ -z "$all" ] || cat <<'END'
@@ -37,7 +37,7 @@ END
 }
 
 if [ "${MXEON_BARE:-}" ]; then
-    # Mounts and processes disappear with this process, because they are in its namespaces.
+    # This process has own namespaces, so all mounts and child processes end with this process.
     cd "$MXEON_BARE"
     mount -t proc proc proc
     mount --rbind /sys sys

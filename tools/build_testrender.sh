@@ -1,15 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Builds oslc, testrender and testshade of Open Shading Language on Debian 12, in about 20 minutes on
-# two cores, and prints the environment variables that tell mxeon where they are.
+# two cores, and prints the environment variables with which mxeon finds the programs.
 #
 #   build_testrender.sh FOLDER
 #
 # Debian packages: git python3-pip flex bison cmake ninja-build g++ clang-14 libclang-14-dev llvm-14-dev
 # libimath-dev libpugixml-dev libfmt-dev zlib1g-dev
 #
-# Debian 12's OpenImageIO is too old. Its libraries come from the PyPI wheel, and its headers from the
-# sources of the same version; this script writes the version header and the CMake package.
+# Debian 12's OpenImageIO is too old. The libraries of a newer version come from the PyPI wheel, and
+# the headers come from the sources. The script writes the version header and the CMake package.
 set -eu
 folder=${1:?usage: build_testrender.sh FOLDER}
 jobs=${JOBS:-$(nproc)}
@@ -19,7 +19,7 @@ cd "$folder"
 folder=$PWD
 
 sources() { # FOLDER TAG URL
-    # Rename the clone only when it is complete, since an interrupted one leaves its folder.
+    # Rename the clone only when complete, because an interrupted clone leaves a folder.
     [ -d "$1" ] && return
     rm -rf "$1.part"
     git -c advice.detachedHead=false clone --quiet --depth 1 --branch "$2" "$3" "$1.part"
@@ -31,7 +31,7 @@ sources robin "$robin" https://github.com/Tessil/robin-map
 
 prefix=$folder/prefix
 if [ ! -d "$prefix" ]; then
-    # Rename the folder only when it is complete, like the clones.
+    # Rename the folder only when complete.
     rm -rf prefix.part wheel
     mkdir -p prefix.part/include prefix.part/lib/cmake/OpenImageIO
     cp -r oiio/src/include/OpenImageIO robin/include/tsl prefix.part/include/
@@ -81,7 +81,7 @@ cmake -S osl -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$
     -DOSL_USE_OPTIX=OFF -DBUILD_TESTING=ON -DOSL_BUILD_TESTS=ON -DSTOP_ON_WARNING=OFF -DVEC_REPORT=OFF
 cmake --build build --parallel "$jobs" --target oslc testrender testshade
 
-# oslc looks for its standard header in the folder of the installation.
+# oslc looks for the standard header in the installation folder.
 mkdir -p installed/share/OSL
 cp -r osl/src/shaders installed/share/OSL/
 cat <<END

@@ -5,8 +5,8 @@
     python tools/golden.py write out/before.jsonl [--host gl ...]  # default: all hosts here
     python tools/golden.py compare out/before.jsonl out/after.jsonl
 
-Each line has the result of a check on a subject, with a library on a host: the verdict, the
-tolerance, whether the check detected the negative control, the diagnosis, and the pages of the
+Each line has the result of a check on a subject with a library on a host. A result has the verdict,
+the tolerance, whether the check detected the negative control, the diagnosis, and the pages of the
 ledger. Numbers in a diagnosis are rounded to two digits, because engines differ in further digits.
 """
 
@@ -27,7 +27,7 @@ Line = dict[str, object]
 
 
 def lines(host: str, library: str) -> list[Line]:
-    """Results on a host for all nodes and for the bundled examples."""
+    """Results of `mxeon check --node all` on a host, or of `mxeon check` if `--node all` fails."""
     command = ["mxeon", "check", "--host", host, "--library", library, "--json"]
     for nodes in (["--node", "all"], []):
         run = subprocess.run([*command, *nodes], capture_output=True, text=True, check=False)

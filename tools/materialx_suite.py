@@ -86,21 +86,21 @@ def slug(text: str) -> str:
 
 
 def change(stock: Codes, eonlib: Codes) -> tuple[float, float]:
-    """Largest signed change of a picture, where white is 1, and share of visibly changed pixels."""
+    """Largest signed change of a picture, relative to white, and fraction of visible changes."""
     changed = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
     largest = changed.flat[np.abs(changed).argmax()]
     return float(largest), float(np.mean(np.abs(changed) > VISIBLE))
 
 
 def stage(folder: Path, checkout: Path, build: Path) -> None:
-    """Create the folder in which the suite runs, with the name of the tested library."""
+    """Create a folder in which the suite runs. The folder has the name of the tested library."""
     if folder.exists():
         return
     for name in ("libraries", "resources"):
         shutil.copytree(checkout / name, folder / name, copy_function=os.symlink)
     (folder / OPTIONS).unlink()  # a link, which `run_tests` replaces by a file
     (folder / "bin").mkdir()
-    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # reads data from its folder
+    shutil.copy(build / "bin" / "MaterialXTest", folder / "bin")  # reads data from the folder
     # MaterialX reads files before subfolders, so documents of eonlib take precedence.
     for path in documents_folder().rglob("*.mtlx") if folder.name == EONLIB else ():
         (folder / "libraries" / path.name).symlink_to(path)
@@ -110,14 +110,14 @@ def stage(folder: Path, checkout: Path, build: Path) -> None:
 
 
 def option_text(value: str) -> str:
-    """The value of an option on the page, such as "b/c.hdr" for "a/b/c.hdr"."""
+    """Short text for the value of an option, such as "b/c.hdr" for "a/b/c.hdr"."""
     names = ["/".join(Path(each.strip()).parts[-2:]) for each in value.split(",")]
     documents = f"{len(names)} documents" if names[0].endswith(".mtlx") else ", ".join(names)
     return documents + NOTE * (names[0] == DOME)
 
 
 def write_dome(path: Path) -> None:
-    """Write half a sphere of 60 faces as OBJ, which renders faster in software than 3600 faces."""
+    """Write half a sphere as OBJ, with 60 faces instead of 3600 for faster software rendering."""
     rings, sectors = 5, 12
     lines = []
     for ring, sector in np.ndindex(rings + 1, sectors + 1):
@@ -164,7 +164,7 @@ def codes(picture: Path) -> Codes:
 
 
 def failed_tests(folder: Path) -> dict[str, bool]:
-    """Whether a C++ test case failed, by name."""
+    """Whether each C++ test case failed, by name."""
     return {
         case.attrib["name"]: case.find("OverallResult[@success='true']") is None
         for path in folder.glob("*.xml")

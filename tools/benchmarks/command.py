@@ -39,8 +39,8 @@ sys.exit(status)
 def timed(options, cache):
     """Run `mxeon check` with `options` and the folder `cache` for the driver's shader cache.
 
-    Returns seconds, peak memory in MiB, and the number of failed checks, or infinity if no check
-    passes.
+    Returns seconds, peak memory in MiB, and the number of failed checks. The number is infinity if
+    no check passes.
     """
     environment = {name: value for name, value in os.environ.items() if name != CACHE}
     command = [sys.executable, "-P", "-m", "mxeon", "check", "--json", "--workers", "2", *options]

@@ -15,7 +15,7 @@ from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 SIZE = 512  # width and height of the timed frames in pixels
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # processes per material; in one of six, llvmpipe is 17 to 40 % slower
+PROCESSES = 7  # processes per material; llvmpipe is 17 to 40 % slower in one process of six
 MESH = 128  # squares along a side of the mesh
 LIBRARIES = ("eonlib", "stock")
 
@@ -65,9 +65,9 @@ GOALS = {name: goal for group, goal in RATIOS for name in group}
 
 
 class Frame:
-    """A material on a sphere that is drawn repeatedly with the same uniforms and buffers.
+    """A sphere that is drawn repeatedly with the same material, uniforms and buffers.
 
-    Setup and drawing are separate methods, which are timed separately.
+    The constructor and `draw` can be timed separately.
     """
 
     def __init__(self, host, generated, size):
@@ -79,7 +79,7 @@ class Frame:
             if name in program:
                 host._texture(raster.WHITE_TEXELS, False).use(location=unit)
                 program[name].value = unit
-        # `vertices` of a mesh at the pixel centers of a small picture with a margin.
+        # The mesh has a vertex at each pixel center of a small picture with a margin.
         width = MESH + 2 * points.MARGIN
         corner = np.arange(width * width).reshape(width, width)[:-1, :-1].ravel()
         indices = (corner[:, None] + [0, 1, width, width, 1, width + 1]).astype("u4")
@@ -103,7 +103,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, seconds to compile, and seconds to draw a frame, by library. Call in a new process."""
+    """Device, seconds to compile, and seconds to draw, by library. Call in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)
@@ -111,7 +111,7 @@ def run(node, size, libraries):
         host.compile(nodes.document_text(NODES[name]), library=library)[0]
         for name, library in [("oren_nayar", "stock"), *((node, each) for each in libraries)]
     )
-    with host._context:  # `Frame` needs the current context
+    with host._context:  # `Frame` needs a current context
         # Another material is drawn first, so that compilation times do not include the driver's
         # start.
         Frame(host, first, FIRST).draw()

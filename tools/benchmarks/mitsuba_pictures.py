@@ -112,7 +112,7 @@ def time_table(mi):
 
 
 def noise_table(mi):
-    """Lines of the table in docs/sampling.md, with cosine sampling relative to EON's sampler."""
+    """Lines of the table in docs/sampling.md that compares cosine sampling with EON's sampler."""
     head = ("roughness", "variance", "time", "variance times time")
     yield f"| cosine / exact, Mitsuba {version('mitsuba')} | {' | '.join(head)} |\n{'|---' * 5}|\n"
     integrator = {"type": "path", "max_depth": 50, "rr_depth": 50}

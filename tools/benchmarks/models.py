@@ -16,7 +16,7 @@ COLORS, R = np.array([0.2, 0.5, 0.8]), 0.7  # color and roughness of the materia
 GOLD = (0.183, 0.421, 1.373), (3.424, 2.346, 1.770)
 ROUNDINGS = 3e-6  # tolerance of pi f cos in float32
 ONE, OWN, JIT = "one material", "a material each", "jax.jit, float32"
-SECONDS = {ONE: 0.5, OWN: 3.0}  # goals in seconds for a million pairs in microfacet models
+SECONDS = {ONE: 0.5, OWN: 3.0}  # goals for a million pairs of directions in microfacet models
 
 
 def models(wo, wi, material):

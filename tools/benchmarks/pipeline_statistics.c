@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the driver's statistics of a compiled fragment shader, one "name<tab>number" a line.
+// Prints the driver's statistics of a compiled fragment shader, in lines of "name<tab>number".
 //
 //   pipeline_statistics VERTEX.spv FRAGMENT.spv ATTRIBUTES [BINDING:KIND ...]
 //
-// ATTRIBUTES is the number of vertex attributes; KIND is u (uniform block), t (texture), s (sampler) or
-// c (texture with sampler). Exit status: 0; 1 if Vulkan refuses a call; 3 without an AMD device.
+// ATTRIBUTES is the number of vertex attributes. KIND is u (uniform block), t (texture), s (sampler) or
+// c (texture with sampler). The exit status is 1 if a call of Vulkan fails, 3 without an AMD device.
 
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <vulkan/vulkan.h>
 
-enum { MOST = 64, AMD = 0x1002 };  // maximum entries of a list; Vulkan's vendor ID
+enum { MOST = 64, AMD = 0x1002 };  // maximum entries of a list; PCI vendor ID of AMD
 
 static void check(VkResult result, const char *call)
 {

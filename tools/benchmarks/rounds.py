@@ -23,7 +23,7 @@ class Figure(NamedTuple):
 
 
 class Check(NamedTuple):
-    """Largest error of a timed function's values."""
+    """Largest error of a timed function's values, and the tolerance."""
 
     name: str
     error: float
@@ -43,7 +43,7 @@ class Group(NamedTuple):
 def interleave(functions, rounds, clock=time.perf_counter):
     """Seconds of each function in each round, by name. Functions take turns after a warm-up round.
 
-    `time.process_time` as the clock adds the times of all cores, and excludes other processes.
+    The clock `time.process_time` adds the times of all cores, and excludes other processes.
     """
     seconds = {name: [] for name in functions}
     for _ in range(rounds + 1):

@@ -3,9 +3,9 @@
 
     python -m tools.benchmarks.sampling
 
-The variance of a sample is an integral over the hemisphere, computed by Gauss-Legendre rules
-between the kinks of EON. The variances of LTC and of CLTC without uniform samples are infinite,
-because the density is 0 along a line where EON is positive.
+The variance of a sample's weight is an integral over the hemisphere, computed by Gauss-Legendre
+rules between the kinks of EON. LTC, and CLTC without uniform sampling, have infinite variance,
+because their density is 0 along a line where EON is positive.
 """
 
 import numpy as np
@@ -15,14 +15,14 @@ from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import eon_pdf
 from tools.paper.samplers import BY_NAME, moments
 
-COSINES = np.linspace(0.01, 1.0, 100)  # the variance of cosine samples is infinite at 0
+COSINES = np.linspace(0.01, 1.0, 100)  # cosine sampling has infinite variance at 0
 ROUGHNESSES = (0.01, 0.1, 0.5, 0.75, 1.0)
 VIEWS = (1.0, 0.3, 0.1)
 PRINTED = ("uniform", "cosine", "eon_cltc", "eon")
 
 
 def narrow(polar):
-    """Radiance of a narrow light at a polar angle in degrees, positive on the viewer's side."""
+    """Radiance of a narrow light. `polar`, in degrees, is positive on the viewer's side."""
     towards = np.array([np.sin(np.radians(polar)), 0.0, np.cos(np.radians(polar))])
     return lambda wi: np.exp(200.0 * (wi @ towards - 1.0))
 
@@ -46,7 +46,7 @@ def print_table(first, columns, rows):
 
 
 def print_throughput():
-    """Print the samplers' largest variances and weights, and CLTC's loss of energy, by roughness."""
+    """Print samplers' largest variances and weights, and CLTC's loss of energy, by roughness."""
 
     def over_cosines(name, roughness):
         return np.transpose([moments(name, mu, roughness) for mu in COSINES])
@@ -71,7 +71,7 @@ def print_lighting(name):
 
 
 def print_color():
-    """Print the largest relative variance of a color channel for samples that are exact for gray."""
+    """Print the largest relative variance of a color channel if sampling is exact for gray."""
     rows = {}
     for rho in ((1e-6, 1e-6, 1e-6), (0.1, 0.1, 0.1), (0.5, 0.5, 0.5), (0.8, 0.2, 0.05)):
         found = []

@@ -50,8 +50,8 @@ CALLS = {
     "stock": "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
     "eonlib": "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)",
 }
-# Tolerances of pi f cos in float32. Stock follows Listing 1, which loses digits in 1 - E. E has
-# errors of up to 1.3e-4, so the value has errors of up to 3.61 x 0.29 x 1.3e-4 x 2.
+# Tolerances of pi f cos in float32. Stock MaterialX computes E with errors of up to 1.3e-4, because
+# digits cancel in Listing 1. So the value has errors of up to 3.61 x 0.29 x 1.3e-4 x 2.
 TOLERANCES = {"stock": 3e-4, "eonlib": diffuse.VALUE.value}
 
 

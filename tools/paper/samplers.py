@@ -38,8 +38,7 @@ SAMPLERS = (
     Sampler("eon", sampling.eon_sample, sampling.eon_pdf, "exact"),
 )
 BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
-# Variance of EON's exact sampler, which is not 0 because two fits change the true density by up to
-# 1.3e-5.
+# The variance of EON's exact sampler is not 0, because two fits change the density by up to 1.3e-5.
 EXACT_VARIANCE = 1.7e-10
 
 
@@ -50,7 +49,7 @@ def moments(
     light: Callable[[Array], Array] | None = None,
     nodes: int = 96,
 ) -> tuple[float, float, float]:
-    """Mean, variance and maximum of the weight of a sample times a radiance, by quadrature.
+    """Mean, variance and maximum of a sample's weight times a radiance, by quadrature.
 
     The weight is f cos(theta_i) / p for EON at unit reflectance, and 0 below the horizon.
     """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Renders the materials in `examples/` with stock MaterialX and eonlib, and writes gallery.md.
 
-    python -m tools.site.gallery
+python -m tools.site.gallery
 """
 
 import json

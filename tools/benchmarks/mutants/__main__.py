@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs checks on mutants of eonlib, and writes which check detects each mutant to out/mutants.
+"""Runs checks on mutants of eonlib, and writes the checks that detect mutants to out/mutants.
 
-    python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    the rows of the table
-    python -m tools.benchmarks.mutants --seed N [--share 0.1]         some of the operators' mutants
+    python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    mutants in `table/`
+    python -m tools.benchmarks.mutants --seed N [--share 0.1]         random mutants by operators
 
 A survivor is a mutant that no check detects. The exit status is 0 if the survivors are exactly the
 known survivors, otherwise 1.
@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             found = trial(mutant, judge) if undetected else killed("gl", [check], "")
             trials[mutant.name] = {"digest": mutant.digest} | found
             write_text(file, json.dumps(trials, indent=1, sort_keys=True) + "\n")
-    # The output is the number of mutants by group and verdict, followed by unexpected verdicts.
+    # Print the number of mutants by group and verdict, then all unexpected verdicts.
     verdicts = {each.name: trials[each.name]["verdict"] for each in chosen}
     counts = Counter((each.group, verdicts[each.name]) for each in chosen)
     unexpected = [each for each in chosen if (verdicts[each.name] == KILLED) == each.survives]

@@ -85,7 +85,7 @@ def change(mutant: Mutant) -> tuple[str, str]:
 
 @cache
 def every() -> tuple[Mutant, ...]:
-    """All mutants, of which known survivors have a reason from `table/` or SURVIVORS."""
+    """All mutants. Reasons of known survivors are read from `table/` and SURVIVORS."""
     table = {_digest(each): each.reason for each in read_table() if each.survives}
     reasons, found = known_survivors(), []
     for each in (each for name in files() for each in mutants_of(name)):

@@ -62,7 +62,7 @@ ERROR = re.compile(r"\b\d+:(\d+)\(\d+\): error")
 
 @dataclass(frozen=True)
 class Edit:
-    """Text to insert around a part of a source. The text replaces the part if `token` is set."""
+    """Code to insert around a part of a shader. If `token` is set, `before` replaces the part."""
 
     start: int
     end: int
@@ -118,7 +118,7 @@ def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
 
 
 def _operand(code: str, place: int) -> int:
-    """End of the operand at `place`, or 0 if there is no operand."""
+    """End of the operand that starts at `place`, or 0 if no operand starts there."""
     start, depth = place, 0
     for each in re.compile(r"-?[\w.]+|[(\[]|[)\]]|[^\w.()\[\]]+").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -129,7 +129,7 @@ def _operand(code: str, place: int) -> int:
 
 
 def _end(code: str, place: int) -> int:
-    """End of a comparison, whose right side starts at `place`."""
+    """End of the comparison whose right side starts at `place`."""
     depth = 0
     for each in re.compile(r"[()\[\]]|[;,?:]|&&|\|\|").finditer(code, place):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(each[0], 0)
@@ -162,7 +162,7 @@ def instrumented(text: str, mutants: Mapping[int, Mutant]) -> str:
 
 
 class SchemataHost(gl.GlHost):
-    """The gl host with undetected mutants in all shaders. `mutant` is the active mutant, or 0."""
+    """The gl host with all undetected mutants in shaders. `mutant` is the active mutant, or 0."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -222,7 +222,7 @@ class SchemataHost(gl.GlHost):
 
 
 def _numbers_at(text: str, error: str) -> set[int]:
-    """Numbers of mutants on the nearest line with mutants at or before a compiler error."""
+    """Numbers of mutants on the line of a compiler error, or on the nearest line above."""
     lines, found = text.splitlines(), set[int]()
     for place in map(int, ERROR.findall(error)):
         numbers = (NUMBER.findall(line) for line in reversed(lines[max(0, place - 12) : place]))
@@ -232,7 +232,7 @@ def _numbers_at(text: str, error: str) -> set[int]:
 
 @cache
 def chunk_of(file: str) -> str:
-    """The text of a source after the last include, which shaders contain unchanged."""
+    """The code of a file after the last #include. Generated shaders contain this code unchanged."""
     text = (ROOT / file).read_text(encoding="utf-8")
     return re.split(r"^#include .*\n", text, flags=re.M)[-1].strip()
 
@@ -256,12 +256,12 @@ OSL_TWINS = {
 NOT_CHECKED = ("genglsl/path/", "genglsl/lib/hair_parameters.glsl")
 STRIDE = 8
 GROUP = 1024  # mutants per program; larger programs slow the driver down
-Checks = Callable[[], Iterator[tuple[str, bool]]]  # pairs of a check and whether the check failed
+Checks = Callable[[], Iterator[tuple[str, bool]]]  # yields checks and whether each check failed
 Subject = tuple[str, bool, str, Checks]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """For each mutant: SURVIVED, UNWRITTEN, or the check and the subject that detect the mutant."""
+    """By mutant, SURVIVED, UNWRITTEN, or the check and the subject that detect the mutant."""
     twins = [each for each in mutants if each.file in OSL_TWINS]
     glsl = [each for each in mutants if each.file.startswith("genglsl/")]
     numbered = dict(enumerate((m for m in glsl if not m.file.startswith(NOT_CHECKED)), 1))
@@ -287,7 +287,7 @@ def differs_from_glsl(mutant: Mutant) -> bool:
 
 
 def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple[int, str]]:
-    """Numbers of detected mutants, and the check that detects each mutant.
+    """Yield the number of each detected mutant, and the check that detects the mutant.
 
     Detected mutants are removed from the host. Subjects with composed lobes are checked only with
     mutants that no other subject contains.
@@ -308,10 +308,9 @@ def detections(host: SchemataHost, checked: Sequence[Subject]) -> Iterator[tuple
 
 
 def subjects(host: SchemataHost) -> Iterator[Subject]:
-    """Yield title, whether the spec is in COMPOSED, shader text, and checks of each subject."""
+    """Yield each subject's title, whether the spec is in COMPOSED, the shader, and the checks."""
     every = Functions(host)
     yield "functions", False, every.text, every
-    # Films come before transmission, which runs the same code without a film.
     specs = dict.fromkeys((*DIFFUSE, *PLAIN_LOBES, *FILM_SPECS, *PBRLIB))
     made = [make_case(Evaluating, host, s, "eonlib") for s in specs if s.title != "measured_edf"]
     cases = [replace(case, control=True) for case in made]  # controls use a subset of the samples
@@ -322,7 +321,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def node_checks(case: Case, turn: int) -> Checks:
-    """A function that runs one of three groups of a node's checks, selected by `turn`."""
+    """A function that runs the group of a node's checks with the number `turn`, 0, 1 or 2."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
@@ -343,7 +342,7 @@ def node_checks(case: Case, turn: int) -> Checks:
 
 
 class Functions:
-    """Checks of all shader functions, which one call evaluates at every STRIDE-th point."""
+    """Checks of all shader functions. One call evaluates all functions at every STRIDE-th point."""
 
     def __init__(self, host: SchemataHost) -> None:
         self._host, self.language = host, host.language
@@ -355,7 +354,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::STRIDE]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Execute a call, and store a call of all functions with every STRIDE-th point."""
+        """Execute a call. If the call is of all functions, store the call with fewer points."""
         if function == functions.EACH:
             self._call = source, function, *(np.asarray(each)[::STRIDE] for each in arguments)
         return self._host.execute(source, function, *arguments)

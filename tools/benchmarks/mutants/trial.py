@@ -38,7 +38,7 @@ KILLED, SURVIVED = "killed", "survived"
 CRASHED = "crashed"
 TEXT, TESTS = "text", "tests"  # values of `host` if no host is needed
 
-PATH = "genglsl/path/"  # code for path tracers, which no check runs
+PATH = "genglsl/path/"  # code for path tracers; no check runs this code
 # Tests by folder of the mutated file. For PATH, the tests replace the checks. For other folders,
 # the tests run after the checks, which cannot detect some mutants.
 FOLDER_TESTS = {
@@ -52,7 +52,7 @@ FOLDER_TESTS = {
 }
 LOBE = "genglsl/lib/microfacet_lobe.glsl"  # calls environment lookups without an #include
 NOISY = ("environment", "furnace")  # slowest checks on Cycles
-# The gl host cannot detect mutants in the following files, which no shader for gl contains.
+# Shaders for gl do not contain the following files, so gl cannot detect mutants in these files.
 ON_CYCLES = ("genosl/",)
 CLOSURES = "libraries/diffuse/eonlib_genosl"  # calls closures that only the host osl evaluates
 NOT_ON_GL = (*ON_CYCLES, CLOSURES, "libraries/diffuse/eonlib_genmdl")
@@ -60,7 +60,7 @@ TEXT_FIRST = ("libraries/diffuse/eonlib_defs.mtlx",)
 
 
 def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
-    """Verdict on a mutant, the failed checks of the first failed task, and the first cause."""
+    """Verdict on a mutant, with the failed checks and the first cause in the first failed task."""
     if mutant.tests:
         named = tuple(f"{MODEL_TESTS}/{name}" for name in mutant.tests)
         return by_tests(mutant, (named,) if mutant.equivalent else (named, (MODEL_TESTS,)))
@@ -74,7 +74,7 @@ def trial(mutant: Mutant, judge: Judge) -> dict[str, Any]:
 
 
 def by_checks(mutant: Mutant, judge: Judge) -> dict[str, Any]:
-    """Verdict of checks on a mutated copy of eonlib, and the first task with failures."""
+    """Verdict of checks on a mutated copy of eonlib, with failures in the first failed task."""
     nodes = bool(changed_nodes(mutant))
     with wrong_library(mutant) as path:
         try:
@@ -121,7 +121,7 @@ def wrong_library(mutant: Mutant) -> Iterator[str]:
 
 
 def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
-    """Failures that unchanged eonlib does not have, from the first task with such failures."""
+    """New failures, compared with unchanged eonlib, in the first task that has new failures."""
     for task in tasks:
         if failures := _failed(task, judge):
             known = _original_failures(replace(task, library="eonlib"), judge)
@@ -131,19 +131,19 @@ def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
 
 
 def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
-    """Results of a task whose verdict is not PASSED, by check and subject."""
+    """Results with a verdict other than PASSED in a task, by check and subject."""
     results = judge.work(task).results
     return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
 
 
-_original_failures = cache(_failed)  # the original does not change
+_original_failures = cache(_failed)  # results of unchanged eonlib stay the same
 
 
 # --- tasks of a library ---------------------------------------------------------------------------
 
 
 def stages(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts and tasks that can detect a mutant, beginning with the cheapest.
+    """Yield hosts and tasks that can detect a mutant, beginning with the cheapest tasks.
 
     The order is text and nodes, surface shaders, pictures of documents, OSL closures, and Cycles.
     Each picture and each task of Cycles is a separate stage.
@@ -176,7 +176,7 @@ DOCUMENTS = (
     "genosl/cycles/eonlib_cycles_impl.xml",
 )
 INCLUDE = re.compile(r'^#include "([\w./]+)"$', re.MULTILINE)
-# Each target with a host that runs shaders for the target, beginning with the cheapest host.
+# Pairs of a target and a host that runs shaders for the target. The cheapest host is first.
 HOSTS = (("genglsl", "gl"), ("genosl", "osl"), ("genosl", "cycles"))
 LATE = ("inputs", "transmitted_inputs", "integral", "energy")
 
@@ -196,7 +196,7 @@ def changed_nodes(mutant: Mutant) -> set[tuple[str, str]]:
 
 
 def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
-    """Hosts, beginning with the cheapest, with the tasks whose subjects a mutant changes."""
+    """Yield each host with the tasks on subjects whose code a mutant changes."""
     changed = changed_nodes(mutant)
     for target, host in HOSTS:
         titles = {title for each, title in changed if each == target}
@@ -208,8 +208,8 @@ def node_tasks(mutant: Mutant, path: str) -> Iterator[tuple[str, list[Task]]]:
 def _tasks(host: str) -> tuple[Task, ...]:
     """All tasks of a host with eonlib, grouped by subject to compile each shader once.
 
-    The order of subjects is reversed, because the last subject, transmission, runs most of the
-    code. Films come last, because failures of films take longest to diagnose.
+    The order of subjects is reversed, because transmission, the last subject, runs most code. Films
+    come last, because failures of films take longest to diagnose.
     """
     places = {spec.title: -place for place, spec in enumerate(PBRLIB)}
     tasks = make_plan((), [host], ["eonlib"], nodes=["all"]).tasks
@@ -265,7 +265,7 @@ def _entries(document: str, text: str) -> set[tuple[str, ...]]:
 MODEL_TESTS = "tests/models"
 OPTIONS = ("-x", "-q", "--tb=line", "-rfE", "-p", "no:cacheprovider", "--no-header")
 FAILED = re.compile(r"^(?:FAILED|ERROR) \S*?(\w+\.py)(?:::(\w+))?.*?(?: - (.*))?$", re.MULTILINE)
-WIDTH = {"COLUMNS": "200"}  # pytest cuts off messages at the width
+WIDTH = {"COLUMNS": "200"}  # pytest truncates messages at this width
 BLENDER = {"MXEON_CYCLES_PYTHON": f"{ROOT}/.venv-cycles/bin/python"}
 GOOD, NO_TEST = 0, 5  # exit statuses of pytest
 
@@ -296,4 +296,4 @@ def _failure(package: str, tests: Sequence[str]) -> tuple[str, str] | None:
     return test or "import", f"{file}: {message}" if message else file
 
 
-_original_failure = cache(_failure)  # the original does not change
+_original_failure = cache(_failure)  # results of unchanged code stay the same

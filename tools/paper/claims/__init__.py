@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Claims, each a measurement with limits, and the page "The paper, checked" with all claims."""
+"""The page "The paper, checked", and its claims. A claim is a measurement with limits."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Claims of [Portsmouth2025], Appendix A: rho from a given albedo."""
+"""Claims of [Portsmouth2025], Appendix A, where rho is computed from a given albedo."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from tools.paper.claims import Measured, Section
 COLORS = np.linspace(0.0, 1.0, 401)
 ROUGHNESS = np.linspace(0.0, 1.0, 101)
 STATED = 3e-3
-# Float64 formulas with a larger error than a rounding of float32 fail.
+# A formula in float64 fails if the error exceeds a rounding of float32.
 FLOAT32 = 2.0**-24
 SECTION = Section("Appendix A: inversion of the albedo")
 claim = SECTION.claim
@@ -55,7 +55,7 @@ def printed_root() -> Measured:
 
 @claim("below Eq. (31)", "a series serves at low roughness", "error up to r = 0.1", most=STATED)
 def taylor() -> Measured:
-    """Errors of the series that follows Eq. (31), which must be small up to roughness 0.1."""
+    """Errors of the series below Eq. (31). The errors must be small up to roughness 0.1."""
     errors = {}
     for r in (0.01, 0.1, 1.0):
         A, B = _quadratic(r)

@@ -10,7 +10,7 @@ from tools.paper.claims import ROUNDING, Measured, Section
 FINE = np.linspace(0.0, 1.0, 10001)
 SIGMA = np.array([0.1, 0.2, 0.3, 0.5, 0.8, 0.5 * np.pi])
 ROUGHNESS = np.array([0.1, 0.5, 1.0])
-# The albedo of the full Oren-Nayar model must exceed 1 for sigmas below HIGH_SIGMA.
+# The paper claims albedos of the full Oren-Nayar model above 1 for sigmas below HIGH_SIGMA.
 HIGH_SIGMA = 0.6
 SECTION = Section("Sections 2 and 3: the models")
 claim = SECTION.claim
@@ -43,7 +43,7 @@ def qon_gain() -> Measured:
     least=ROUNDING,
 )
 def full_gain() -> Measured:
-    """For low sigmas, largest albedos minus 1. For high sigmas, 1 minus largest albedos."""
+    """Largest albedos minus 1 for low sigmas, and 1 minus largest albedos for high sigmas."""
     mu = np.array([1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2])
     albedos = np.array(
         [albedo_dir_quadrature(diffuse.oren_nayar_brdf, mu, 1.0, s).max() for s in SIGMA]

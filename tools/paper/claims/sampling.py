@@ -18,7 +18,7 @@ def at(degrees: float) -> float:
 
 
 def over_angles(name: str, roughness: float) -> np.ndarray:
-    """Mean, variance and maximum of a sampler's weight at all DEGREES, (3, angles)."""
+    """Mean, variance and maximum of a sampler's weight at all polar angles, (3, angles)."""
     return np.transpose([moments(name, at(degrees), roughness) for degrees in DEGREES])
 
 
@@ -37,8 +37,8 @@ def cosine_variance() -> Measured:
 def cosine_diverges() -> Measured:
     """Growth of the variance from mu = 1e-4 to 1e-5, divided by the growth from 1e-3 to 1e-4.
 
-    Before a peak, the growth would decrease. Instead, each factor of 10 in mu adds (A r)^2 / 2 ln
-    10 to the variance.
+    If the variance had a peak, the growth would decrease. Instead, each factor of 10 in mu adds
+    (A r)^2 / 2 ln(10) to the variance.
     """
     variances = [moments("cosine", mu, 1.0, nodes=200)[1] for mu in (1e-3, 1e-4, 1e-5)]
     first, second = np.diff(variances)
@@ -49,7 +49,7 @@ def cosine_diverges() -> Measured:
 
 @claim("Section 4", "det of the inverse of M is positive everywhere", "det M", least=ROUNDING)
 def determinant() -> Measured:
-    """Least determinant of the inverse of M for all cosines and roughnesses."""
+    """Least determinant of the inverse of M over all cosines and roughnesses."""
     a, b, c, d = (
         entry(COSINES[:, np.newaxis], np.linspace(0.0, 1.0, 101))
         for entry in (sampling.ltc_ma, sampling.ltc_mb, sampling.ltc_mc, sampling.ltc_md)
@@ -69,7 +69,7 @@ def wasted() -> Measured:
 
 @claim("Listing 3", "no sample below the horizon", "z", least=0.0)
 def side_of_the_lune() -> Measured:
-    """Smallest z that Listing 3 samples for wo along the normal, where the fitted d is positive."""
+    """Smallest z that Listing 3 samples if wo is the normal, because d > 0 near the normal."""
     mu = np.linspace(0.999, 1.0, 100_001)
     d = sampling.ltc_md(mu, 1.0)
     u1, u2 = np.random.default_rng(2).random((2, 200_000))
@@ -99,7 +99,7 @@ def mixture_weight() -> Measured:
     least=100.0,
 )
 def gain() -> Measured:
-    """Variance of cosine sampling, divided by the variance of CLTC plus uniform."""
+    """Variance of cosine sampling divided by the variance of CLTC plus uniform sampling."""
     parts, ratios = [], []
     for degrees in (60.0, 85.0, 89.0, 89.9, 90.0 - np.degrees(1e-6)):
         cosine, mixture = (
@@ -117,7 +117,7 @@ def gain() -> Measured:
     most=1.0,
 )
 def low_roughness() -> Measured:
-    """Variance of CLTC plus uniform, relative to cosine sampling and averaged over wo."""
+    """Mean variance of CLTC plus uniform sampling, divided by that of cosine sampling."""
     weight = np.sin(np.radians(2.0 * DEGREES))
     parts, ratios = [], []
     for r in (0.02, 0.05, 0.1, 0.2):
