@@ -7,6 +7,7 @@ import re
 import shutil
 import sys
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
@@ -33,12 +34,13 @@ from tests.support.results import (
     made,
     made_run,
     quoted,
+    shown,
 )
 from tests.support.verdicts import FAILED, NOT_RUN
 from tests.support.wrong_libraries import copy_of_eonlib, copy_of_stock
 
 NAME = "genglsl_clamped_dot"
-PICTURE = made(key="picture", subject="clay.mtlx: terracotta")
+PICTURE = shown("terracotta")
 
 
 def stock(verdict=FAILED, **fields):
@@ -98,7 +100,7 @@ def test_every_section_has_a_longest_length_and_counts_what_it_leaves_out():
     results = [made()]
     for each in titles:
         results.append(stock(subject=each, diagnosis=quoted(each)))
-        results.append(stock(key="picture", subject=f"clay.mtlx: {each}", diagnosis=quoted(each)))
+        results.append(shown(each, FAILED, CLAY, library="stock", diagnosis=quoted(each)))
     run = replace(made_run(*results, compared=("stock",)), contents={CLAY: titles})
     lines = answer(run)
     assert len(lines) == LONGEST["material"] + LONGEST["node"] + LONGEST["cause"] + 3
@@ -157,9 +159,9 @@ def test_a_lobe_that_a_document_lacks_makes_no_combination_wrong_for_it():
 def test_a_copy_of_eonlib_is_not_referred_to_eonlib(tmp_path):
     stock, own = copy_of_stock(tmp_path / "stock", "pbrlib"), copy_of_eonlib(tmp_path / "own")
     for library, referred in ((str(stock), True), (str(own), False)):
-        shown = replace(PICTURE, library=library, **SEEN)
+        picture = replace(PICTURE, library=library, **SEEN)
         files = {library: {"folder": ()}}
-        lines = answer(made_run(made(FAILED, library=library), shown, libraries=files))
+        lines = answer(made_run(made(FAILED, library=library), picture, libraries=files))
         assert lines[-1].endswith("check with --library eonlib") == referred
 
 
@@ -175,9 +177,23 @@ def test_a_failing_picture_is_printed_by_itself_or_with_the_lobe_that_fails():
     assert any("up to 5 % of white too dark" in line and "normalmap" in line for line in lines)
 
 
+@pytest.mark.parametrize(
+    "documents", (["a: b.mtlx", "c.mtlx"], ["x/m.mtlx", "y/m.mtlx"], ["./x/m.mtlx", "y//m.mtlx"])
+)
+def test_a_material_belongs_to_one_document_whatever_the_names_of_files(documents):
+    right, bad = (shown("look", document=str(Path(each))) for each in documents)
+    run = made_run(made(), right, replace(bad, **SEEN), documents=documents)
+    first, second, *_ = answer(run)
+    names = documents if "m.mtlx" in documents[0] else [Path(each).name for each in documents]
+    assert first.startswith(f"{names[1]}: look: with eonlib, up to 5 %")
+    assert second == f"{names[0]}: look: looks as specified with eonlib."
+    _, failed, passed = summary_by_cause(run)
+    assert failed.endswith(f"({documents[1]})") and passed.endswith(f"({documents[0]})")
+
+
 def test_every_document_appears_those_that_look_wrong_first():
     documents = [f"{number}.mtlx" for number in range(20)]
-    pictures = [replace(PICTURE, subject=f"{each}: look{each[0]}") for each in documents[:-1]]
+    pictures = [shown(f"look{each[0]}", document=each) for each in documents[:-1]]
     pictures[7] = replace(pictures[7], **SEEN)
     lines = answer(made_run(made(), *pictures, documents=documents))
     assert len(lines) <= 10 and lines[0].startswith("7.mtlx: look7: with eonlib, up to 5 %")
@@ -334,14 +350,15 @@ def test_a_folder_stands_for_the_documents_in_it_and_below_it(tmp_path):
 
 
 RUN = made_run(
-    made(key="picture", subject="clay.mtlx: look"),
-    made(key="picture", subject="clay.mtlx: other"),
-    made(
+    shown("look"),
+    shown("other"),
+    shown(
+        "look",
+        document="a/glass.mtlx",
         key="finite",
-        subject="glass.mtlx: look",
         diagnosis=quoted("reference: there is no model for 'x/y'"),
     ),
-    made(key="picture", subject="noise.mtlx: look", measured=("lobe.color",)),
+    shown("look", document="b/noise.mtlx", measured=("lobe.color",)),
     made(FAILED, subject="noise.mtlx: node"),
     documents=("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx"),
     refused=(Refused("light.mtlx", ('light.mtlx: must contain a renderable element; got "a"',)),),

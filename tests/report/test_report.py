@@ -202,7 +202,12 @@ FINITE = {"check": "finite", "diagnosis": quoted("no model of fur")}
 )
 def test_a_sentence_says_how_a_material_looks(run, result, picture, words):
     shown = made_picture("clay", **picture)
-    about = {"check": "picture", "subject": "a/clay.mtlx: clay", "difference": shown.difference}
+    about = {
+        "check": "picture",
+        "document": "a/clay.mtlx",
+        "element": "clay",
+        "difference": shown.difference,
+    }
     error = {FAILED: 1.0}.get(result.get("verdict"), 1e-7)
     judged = replace(made_result(PASSED), **{"error": error, **about, **result})
     one = replace(run, results=(judged,), pictures=(shown,))
@@ -214,6 +219,26 @@ def test_a_sentence_says_how_a_material_looks(run, result, picture, words):
     )
 
 
+def test_documents_of_one_name_in_two_folders_are_two_materials(run):
+    names = "x/m.mtlx", "y/m.mtlx"
+    pictures = tuple(
+        made_picture("look", document="m.mtlx", metadata={"document": each}, **fields)
+        for each, fields in zip(names, ({"image": EXACT}, {}), strict=True)
+    )
+    about = {"check": "picture", "subject": "m.mtlx: look", "element": "look", "error": 1.0}
+    judged = [
+        made_result(
+            verdict, document=each.metadata["document"], difference=each.difference, **about
+        )
+        for each, verdict in zip(pictures, (PASSED, FAILED), strict=True)
+    ]
+    shown = replace(run, results=(*judged,), pictures=pictures)
+    text = Page(page_of(shown)).text
+    assert "looks as specified." in text and BRIGHT in text
+    listed = json.loads(to_json(shown))["pictures"]
+    assert len({each["reference"] for each in listed}) == 2
+
+
 def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(run):
     image = EXACT + 0.009
     image[SIZE // 2, 8] += 0.004
@@ -221,7 +246,13 @@ def test_the_worst_light_is_first_and_its_scale_reaches_its_largest_difference(r
         made_picture("clay", image=EXACT),
         made_picture("clay", image=image, scene="back"),
     )
-    about = {"check": "picture", "subject": "a/clay.mtlx: clay", "error": 0.013, "tolerance": 0.012}
+    about = {
+        "check": "picture",
+        "document": "a/clay.mtlx",
+        "element": "clay",
+        "error": 0.013,
+        "tolerance": 0.012,
+    }
     shown = replace(run, results=(made_result(PASSED, **about),), pictures=pictures)
     text = Page(page_of(shown)).text
     places = ("Light from behind, gl", "≥ 1.3 % of white", "Light from the side, gl")
@@ -238,7 +269,7 @@ def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(r
     spheres = [made_picture(each.element, library=each.library) for each in studio]
     judged = [
         made_result(
-            PASSED, check="picture", subject=f"a/clay.mtlx: {each.element}", library=each.library,
+            PASSED, check="picture", document="a/clay.mtlx", element=each.element, library=each.library,
             difference=results.Difference("side", {"bad": 0.5, "good": 0.0}[each.element], False, 0.5),
         )
         for each in spheres

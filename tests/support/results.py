@@ -42,6 +42,12 @@ def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", 
     return Result(key, "claim", subject, host, library, verdict, **numbers | fields)
 
 
+def shown(element, verdict=PASSED, document="a/clay.mtlx", key="picture", **fields):
+    """Invented result of a picture of a document's material."""
+    place = {"document": document, "element": element}
+    return made(verdict, key, f"{Path(document).name}: {element}", **place | fields)
+
+
 def made_run(*results, documents=("a/clay.mtlx",), **fields):
     contents = dict.fromkeys(documents, (EON,))
     software, hosts = {"MaterialX": "1.39.5"}, (Identity("gl", "4.5", "cpu"),)

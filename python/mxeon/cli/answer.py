@@ -7,6 +7,7 @@ import argparse
 import json
 import re
 import sys
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -231,16 +232,18 @@ def _materials(run: Run) -> Iterator[Line]:
     hosts = {each.host for each in run.results if each.check in PICTURE_CHECKS}
     # Name, sentence, rank and verdict of each material on each host.
     rows: list[tuple[str, str, int, Verdict | None]] = []
+    same_name = Counter(Path(each).name for each in run.contents)
     for document in run.contents:
         if _is_refused(run, document, ""):
             continue
         pictures = (each for each in run.results if _is_picture(each, document))
-        materials = grouped(pictures, lambda each: (each.subject, each.host))
+        materials = grouped(pictures, lambda each: (each.element, each.host))
         if not materials:
             rows.append((document, "not rendered on this host", len(STATES), None))
-        for (subject, host), results in materials.items():
-            element = subject.removeprefix(f"{Path(document).name}: ")
-            name = element if len(run.contents) == 1 else subject
+        for (element, host), results in materials.items():
+            title = document if same_name[Path(document).name] > 1 else Path(document).name
+            names = [element or title] if len(run.contents) == 1 else [title, element]
+            name = ": ".join(filter(None, names))
             place = f" on {host}" if len(hosts) > 1 else ""
             rank = min(STATES.index(each.verdict) for each in results)
             judged = [each.verdict for each in results if each.library not in run.compared]
@@ -298,8 +301,7 @@ def _is_right(result: Result) -> bool:
 
 
 def _is_picture(result: Result, document: str) -> bool:
-    subject = result.subject.split(": ")[0]
-    return result.check in PICTURE_CHECKS and subject in (Path(document).name, document)
+    return result.document == str(Path(document))
 
 
 WRONG, ELSEWHERE, RIGHT = range(3)

@@ -226,7 +226,8 @@ def _judge_material(
     """Judge one material. If `front_lit`, only judge points with light on the viewer's side."""
     scenes, library = _scenes(host), values.library
     subject = f"{file.name}: {shader.element}"
-    place = Result("picture", MATCH, subject, host.name, library, results.NOT_RUN)
+    about = "picture", MATCH, subject, host.name, library
+    place = Result(*about, results.NOT_RUN, document=str(file), element=shader.element)
     try:
         images = [host.picture(shader, scene) for scene in scenes]
     except (NotRun, ShaderError) as error:
@@ -446,7 +447,8 @@ def generate_document(
         caught = False
     except DocumentError:
         caught = True
-    place = Result(DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library, results.NOT_RUN)
+    about = DOCUMENT_KEY, DOCUMENT_CLAIM, file.name, host, library
+    place = Result(*about, results.NOT_RUN, document=str(file))
     tolerance, words = count_of(Quantity.DOCUMENTS), "half of the document is cut off"
 
     def measure(wrong: bool) -> Measurement:

@@ -123,7 +123,7 @@ def checked_materials(file: str, library: str, policy: Policy = DEFAULT) -> dict
     except MxeonError:  # gl is missing, or the document has an error that was already reported
         return {}
     return {
-        each.subject.removeprefix(f"{Path(file).name}: "): data.Checked(
+        each.element: data.Checked(
             "unknown"
             if each.check == "finite"
             else "within"

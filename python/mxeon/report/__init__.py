@@ -235,7 +235,7 @@ def _with_references(pictures: Iterable[Picture]) -> tuple[Picture, ...]:
 def _subject(picture: Picture) -> tuple[str, ...]:
     """Key that a picture and its reference share. Portraits must also agree on rendered points."""
     points = picture.metadata.get("points", "")
-    return picture.document, picture.element, picture.library, picture.scene, points
+    return *picture.shown, picture.library, picture.scene, points
 
 
 # Threads help because encoders release the interpreter's lock.

@@ -45,7 +45,8 @@ OPEN_ROWS = 20  # maximum number of failed checks that are shown unfolded
 WORST_FIRST: tuple[Verdict, ...] = (FAILED, NOT_RUN, DIFFERS, PASSED)
 
 Place: TypeAlias = tuple[str, str]  # host and library
-Verdicts: TypeAlias = Mapping[tuple[str, str, str], Result]  # keys: subject, host and library
+# Results by material (the path of a document, or PORTRAIT, and an element), host and library.
+Verdicts: TypeAlias = Mapping[tuple[tuple[str, str], str, str], Result]
 
 
 @dataclass(frozen=True)
@@ -128,26 +129,23 @@ def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:
 
     Materials of documents come before portraits of nodes, and failed materials before others.
     """
-    verdicts: dict[tuple[str, str, str], Result] = {}
+    verdicts: dict[tuple[tuple[str, str], str, str], Result] = {}
     for each in run.results:
         if each.check in ("picture", "finite", *DIRECT):
-            document = f"{PORTRAIT}: " if each.check in DIRECT else ""
-            verdicts[document + each.subject, each.host, each.library] = each
-    groups = grouped(run.pictures, subject_of)
-    failed = {subject for (subject, *_), each in verdicts.items() if each.verdict == FAILED}
+            node = PORTRAIT, each.subject
+            shown = node if each.check in DIRECT else (each.document, each.element)
+            verdicts[shown, each.host, each.library] = each
+    groups = grouped(run.pictures, lambda picture: picture.shown)
+    failed = {shown for (shown, *_), each in verdicts.items() if each.verdict == FAILED}
     largest = dict.fromkeys(groups, 0.0)
-    for (subject, *_), each in verdicts.items():
-        if subject in largest and each.difference:
-            largest[subject] = max(largest[subject], abs(each.difference.largest))
+    for (shown, *_), each in verdicts.items():
+        if shown in largest and each.difference:
+            largest[shown] = max(largest[shown], abs(each.difference.largest))
     order = sorted(
         groups,
-        key=lambda name: (is_portrait(groups[name]), name not in failed, -largest[name]),
+        key=lambda shown: (is_portrait(groups[shown]), shown not in failed, -largest[shown]),
     )
-    return [groups[subject] for subject in order], verdicts
-
-
-def subject_of(picture: Picture) -> str:
-    return f"{picture.document}: {picture.element}"
+    return [groups[shown] for shown in order], verdicts
 
 
 def is_portrait(pictures: Sequence[Picture]) -> bool:
@@ -161,7 +159,7 @@ def material(verdicts: Verdicts, pictures: Sequence[Picture]) -> dict[str, Any]:
     pictures = sorted(pictures, key=lambda each: each.library != "stock")
     by_row = grouped(pictures, lambda each: (each.host, each.scene))
     found = {
-        (each.host, each.library): verdicts.get((subject_of(each), each.host, each.library))
+        (each.host, each.library): verdicts.get((each.shown, each.host, each.library))
         for each in pictures
     }
     tolerances = [each.tolerance or 0.0 for each in found.values() if each]

@@ -246,6 +246,8 @@ class Result(BriefRepr):
 
     - `check`, `claim`: Key of the check, and the sentence that the check tests.
     - `subject`: A node and its flag, or a document and its element.
+    - `document`, `element`: Path of the judged document, and name path of the judged material; ""
+      for other checks, and without a result of single materials.
     - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS if the specification permits the error.
     - `error`, `tolerance`: Measured error and largest accepted error. A check passes if error <=
       tolerance.
@@ -287,6 +289,8 @@ class Result(BriefRepr):
     difference: Difference | None = field(default=None, repr=False)
     control: Control | None = field(default=None, repr=False)
     reason: str = ""
+    document: str = field(default="", repr=False)
+    element: str = field(default="", repr=False)
     claimed: str = field(default="", repr=False)
     model: str = field(default="", repr=False)
     measured: tuple[str, ...] = field(default=(), repr=False)
@@ -356,6 +360,11 @@ class Picture:
     reference: NDArray[np.floating] | None = field(repr=False)
     metadata: dict[str, str] = field(repr=False)
     judged: NDArray[np.floating] | None = field(default=None, repr=False)
+
+    @property
+    def shown(self) -> tuple[str, str]:
+        """The path of the document, which its name may share with others, and the element."""
+        return self.metadata.get("document", self.document), self.element
 
     @cached_property
     def difference(self) -> Difference | None:

@@ -161,7 +161,7 @@ def issues_of(result: Result) -> tuple[Issue, ...]:
 
 def blamed(result: Result) -> list[set[str]]:
     """Lobes that make a combination fail, in one set per page or cause, or [] for a single lobe."""
-    if _is_lobe(result.subject):
+    if not result.document and _is_lobe(result.subject):
         return []
     if found := issues_of(result):
         rows = [(*each.rows, *each.implied) for each in found]

@@ -47,7 +47,9 @@ def one_result(
         own_nodes(task.host)  # imports a renderer's checks
         claim = next(each.claim for each in checks.CHECKS if each.key == task.check)
     place = (task.check, claim, task.subject, task.host, task.library)
-    return Findings((results.Result(*place, verdict, reason=reason, diagnosis=diagnosis),))
+    document = str(Path(task.subject)) if task.check in (DOCUMENT, plan.PICTURE) else ""
+    result = results.Result(*place, verdict, reason=reason, document=document, diagnosis=diagnosis)
+    return Findings((result,))
 
 
 class Judge:
