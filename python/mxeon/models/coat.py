@@ -657,7 +657,7 @@ def _by_cosine(u: ArrayLike, share: Array) -> Array:
 def _albedo(
     mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> tuple[Array, Array]:
-    """E_single of the facets, (..., 1), and E of facets and EON together, (..., C)."""
+    """Albedo E_single of the facets, (..., 1), and albedo E of facets and EON, (..., C)."""
     (color,), (r, height) = checked_colors({"rho": rho}, roughness=roughness, mu=mu)
     varnish = varnish_of(alpha, ior)
     curves = nonnegative(varnish.at(height))

@@ -488,7 +488,7 @@ def fon_albedo_avg(roughness: ArrayLike) -> Array:
 
 @any_array
 def eon_albedo_dir(mu: ArrayLike, rho: ArrayLike, roughness: ArrayLike) -> Array:
-    """Directional albedo of EON, which is exactly 1 where rho is 1.
+    """Directional albedo of EON. The albedo is exactly 1 where rho is 1.
 
         E(mu) = rho (1 - (1 - rho) roughness H(mu) / D),
         D = 1 + c1 roughness - rho roughness (c1 - c2)

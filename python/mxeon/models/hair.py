@@ -201,7 +201,7 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
-HAIR_BLOCK = 4096  # elements per block, which is small because each element needs much memory
+HAIR_BLOCK = 4096  # elements per block; few, because each element needs much memory
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")
 )

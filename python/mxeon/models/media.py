@@ -112,7 +112,7 @@ def cone_width(inner: Array, outer: Array) -> Array:
 def _checked(
     wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[Array, list[Array], list[Array]]:
-    """Cosine of wo's polar angle, in [-1, 1], and validated colors and numbers, which broadcast."""
+    """Cosine of wo's polar angle, in [-1, 1], and validated colors and numbers that broadcast."""
     directions = arguments.checked_sphere("wo", wo)
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))
@@ -142,7 +142,7 @@ def transmittance(absorption: ArrayLike, scattering: ArrayLike, distance: ArrayL
 
 @any_array
 def hg_pdf(wo: ArrayLike, wi: ArrayLike, g: ArrayLike) -> Array:
-    """Phase function of Henyey and Greenstein, which is the density of `wi`, in 1/sr.
+    """Phase function of Henyey and Greenstein: the density of `wi`, in 1/sr.
 
         f_p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos)^(3/2)),  cos = -dot(wo, wi)
 
@@ -265,9 +265,9 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     """CIE 1931 XYZ of a black body, with Y = 1.
 
     Result (..., 3): Sums over the observer's table in steps of 5 nm, which differ by less than 5e-5
-    from sums in steps of 1 nm. Each spectrum is scaled by its largest exponential, so a cold body
-    has the right color although its radiance would underflow in float64. [Planck1901]; ISO/CIE
-    11664-1.
+    from sums in steps of 1 nm. Each spectrum is scaled by the spectrum's largest exponential, so a
+    cold body has the right color although its radiance would underflow in float64. [Planck1901];
+    ISO/CIE 11664-1.
 
         >>> blackbody_xyz(6504.0).round(4)
         array([0.9688, 1.    , 1.1218])
@@ -276,7 +276,7 @@ def blackbody_xyz(temperature: ArrayLike) -> Array:
     xp = array_namespace(kelvin)
     exponent = SECOND / (like(NANOMETER * WAVELENGTHS, kelvin) * kelvin)
     least = exponent[..., -1:]  # the longest wavelength has the smallest exponent
-    # `growth` is (exp(exponent) - 1) / exp(least). The limit 700 affects only negligible terms.
+    # `growth` is (exp(exponent) - 1) / exp(least). The clamp to 700 affects only negligible terms.
     growth = xp.exp(xp.minimum(exponent - least, 700.0)) * -xp.expm1(-exponent)
     xyz = xp.tensordot(like(WAVELENGTHS**-5.0, kelvin) / growth, like(CIE_1931, kelvin), axes=1)
     return xyz / xyz[..., 1:2]

@@ -6,14 +6,14 @@ Arguments have the order `wo`, `wi`, `u`, `roughness`. A function omits argument
 need.
 
 - `wo` (..., 3): Direction to the viewer, unit vector to 1e-6, normal +z, z >= 0.
-- `wi` (..., 3): Direction to the light, a unit vector. A sample with z < 0 is wasted, which means
-  that its weight is 0.
+- `wi` (..., 3): Direction to the light, a unit vector. A sample with z < 0 is wasted: the weight of
+  the sample is 0.
 - `u` (..., 2): Independent uniform random numbers, in [0, 1).
 - `roughness` (...): In [0, 1]; Zeltner's sheen raises a smaller roughness to 0.01. For GGX, alpha
   along tangent +x and bitangent, (..., 2) or ().
 - `rho` (...): Gray reflectance for which the sampling of EON is exact, in [0, 1]; one number for
-  each direction. Three numbers for three samples of one `wo` are rejected, because they might be
-  meant as a color.
+  each direction. Three numbers for three samples of one `wo` are rejected, because three numbers
+  might be meant as a color.
 - `pdf` (...): Density per solid angle, in 1/sr.
 
 Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
@@ -32,8 +32,8 @@ which can be integrated over the unit disk below the hemisphere:
 | flat     | 1 + q x                                 | 1                                          |
 
 Here K(theta) = (theta - sin(theta) cos(theta))/2 - sin^3(theta)/3. The sum of the four integrals is
-1 + c1 r, which is 1 / A (proof in docs/note.md, section 3). Each part is sampled by inverting its
-distribution. The inverse distributions of `flat` and `lower` are closed forms. The inverse
+1 + c1 r, which is 1 / A (proof in docs/note.md, section 3). Each part is sampled by inverting the
+part's distribution. The inverse distributions of `flat` and `lower` are closed forms. The inverse
 distributions of `multiple` and `upper` have no parameters and are approximated by polynomials. The
 returned density is the exact sum of the parts. The true density of the samples has a relative error
 of at most 1.3e-5 for each part, and so for the sum, because the error of the sum is a weighted mean
@@ -83,7 +83,7 @@ def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def uniform_pdf(wi: ArrayLike) -> Array:
-    """Density of `uniform_sample` at `wi`, which is 1/(2 pi).
+    """Density 1/(2 pi) of `uniform_sample` at `wi`.
 
     >>> round(float(uniform_pdf([0.0, 0.6, 0.8])), 6)
     0.159155
@@ -106,7 +106,7 @@ def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
 
 @any_array
 def cosine_pdf(wi: ArrayLike) -> Array:
-    """Density of `cosine_sample` at `wi`, which is z / pi.
+    """Density z / pi of `cosine_sample` at `wi`.
 
     >>> round(float(cosine_pdf([0.6, 0.0, 0.8])), 6)
     0.254648
@@ -222,7 +222,7 @@ def eon_sample(
 
 @any_array
 def eon_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0) -> Array:
-    """Density of `eon_sample` at `wi`, which is f cos(theta_i) / E(theta_o) for EON.
+    """Density of `eon_sample` at `wi`: f cos(theta_i) / E(theta_o), with f and E of EON.
 
     Result (...): 1/sr. At rho = 1, E is 1, so the density is `eon_brdf` times the cosine of `wi`.
     At rho = 0, where f and E are 0, the density is the limit for rho -> 0, which is FON's density.
@@ -309,7 +309,7 @@ def eon_towards(mu: Array, S: Array, u2: Array) -> Array:
 
 
 def eon_lower_cosine(x: Array, S: Array) -> Array:
-    """Cosine below mu_o, sampled in proportion to S mu because x = 1 - S^3 is uniform."""
+    """Cosine below mu_o with a density proportional to S mu, which makes x = 1 - S^3 uniform."""
     return root(x * (1.0 + S) / (1.0 + S + S * S))
 
 
@@ -326,7 +326,7 @@ def eon_upper_quotient(y: Array) -> Array:
 
 
 def eon_upper_cosine(y: Array, mu_o: Array, y_o: Array) -> Array:
-    """Cosine above mu_o, sampled in proportion to S (1 - mu) because K is uniform.
+    """Cosine above mu_o with a density proportional to S (1 - mu), which makes K uniform.
 
         1 - mu = m(v K_o) (1 - mu_o) / m(K_o)
 
@@ -388,7 +388,7 @@ def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ltc_sample` at `wi`, which must be above the horizon.
+    """Density of `ltc_sample` at a `wi` above the horizon.
 
     The integral of the density is the probability that a sample is not wasted. [Portsmouth2025],
     Eqs. (23), (24).
@@ -491,9 +491,9 @@ def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[
     """Direction sampled from the paper's mixture of CLTC and a uniform lobe, and its density.
 
     `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Density of the mixture, in
-    1/sr. Listing 4 of the paper selects the uniform lobe for u1 <= P_u and divides u1 by P_u, which
-    is 0/0 at roughness 0 and u1 = 0. This function selects the uniform lobe for u1 < P_u, which is
-    never true for P_u = 0. [Portsmouth2025], Section 4, Listing 4.
+    1/sr. Listing 4 of the paper selects the uniform lobe for u1 <= P_u and divides u1 by P_u. The
+    quotient is 0/0 at roughness 0 and u1 = 0. This function selects the uniform lobe for u1 < P_u,
+    which is never true for P_u = 0. [Portsmouth2025], Section 4, Listing 4.
 
         >>> wi, pdf = eon_cltc_sample([0.0, 0.0, 1.0], [0.0, 0.0], 0.0)
         >>> wi, round(float(pdf), 6)
@@ -596,7 +596,7 @@ def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array
 
 @any_array
 def ggx_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
-    """Density of `ggx_sample` at `wi`, which may have any z: [Heitz2014], Eqs. (16), (43).
+    """Density of `ggx_sample` at a `wi` with any z: [Heitz2014], Eqs. (16), (43).
 
         pdf = G1(wo) D(wh) / (4 mu_o), and 0 where wh is below the horizon
 

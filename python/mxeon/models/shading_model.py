@@ -45,7 +45,7 @@ class Rows:
 
 @any_array
 def rows(parameters: Sequence[Parameter], vectors: Collection[str], /, **values: ArrayLike) -> Rows:
-    """`Rows` of vectors and of parameters. `values` holds both by name."""
+    """`Rows` of the vectors and the parameters in `values`."""
     directions = {name: _floats(arguments.checked_real(name, values[name])) for name in vectors}
     for name, w in directions.items():
         count = 2 if name == "u" else 3
@@ -133,10 +133,10 @@ class ShadingModel:
 
     The arguments of a function are directions, followed by the inputs in the order of `parameters`;
     inputs may also be passed by name. Omitted inputs have MaterialX's default. Shapes broadcast,
-    except for the last axes of directions, colors and pairs. A color is a number or has its
-    channels on the last axis; three channels are red, green and blue. If all colors are numbers,
-    results have no axis of channels. A pair, such as the `roughness` of microfacets, may be one
-    number for tangent and bitangent.
+    except for the last axes of directions, colors and pairs. A color is a number or has channels on
+    the last axis; three channels are red, green and blue. If all colors are numbers, results have
+    no axis of channels. A pair, such as the `roughness` of microfacets, may be one number for
+    tangent and bitangent.
 
     wo must be on or above the horizon. wi may have any z; the value is 0 if the model scatters no
     light from wi. `pdf` is the density of `sample` and integrates to 1 over the whole sphere. If a

@@ -180,8 +180,8 @@ def conty_kulla_albedo_dir(mu: ArrayLike, roughness: ArrayLike) -> Array:
 
         E(mu) = integral of D / (4 (mu + mu_i - mu mu_i)) mu_i over the hemisphere of wi
 
-    For roughness below 0.2099, E exceeds 1 near grazing; E(0) is about sqrt(1 / (2 pi roughness)),
-    which has no bound. Shaders clamp E to 1, which the specification does not mention. At roughness
+    For roughness below 0.2099, E exceeds 1 near grazing; E(0) is about sqrt(1 / (2 pi roughness))
+    and has no upper bound. Shaders clamp E to 1. The specification mentions no clamp. At roughness
     0, the BRDF and E are 0, even at mu = 0, where the limit for vanishing roughness is infinite.
     Accuracy for roughness >= 1e-4: the relative error is below 1e-11 at mu = 0, and the absolute
     error is below 1e-11 for other mu. E(1) is 2^-p / (2 (p + 2)), where p = 1 / (2 roughness).

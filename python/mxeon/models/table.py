@@ -179,7 +179,7 @@ OTHERS = (
 def _reparametrized(
     name: str, title: str, base: str, parameter: Callable[[Numbers], Numbers]
 ) -> Model:
-    """The model `base` with a roughness in [0, 1] as its parameter.
+    """The model `base` with a roughness in [0, 1] as the parameter.
 
     - `parameter`: Function that converts this roughness to the parameter of `base`.
     """

@@ -25,10 +25,10 @@ specification, the reflectances are R12 and R23, the phase is phi = phi_21 + phi
     C_m = (R_s - T121) sqrt(R12 R23)^m,  T121 = 1 - R12
 
 where D is the optical path difference. In this file, the term of order m is computed from the
-complex power z^m of z = r21 r23 = -r12 r23, whose length is sqrt(R12 R23) and whose angle is phi.
-z^m has derivatives everywhere. Roots and phases have no derivatives where a reflectance is 0. A
-reflectance is 0 for a film with index of refraction 1, at Brewster's angle, and if film and
-substrate have the same index of refraction.
+complex power z^m of z = r21 r23 = -r12 r23. The absolute value of z is sqrt(R12 R23), and the angle
+of z is phi. z^m has derivatives everywhere. Roots and phases have no derivatives where a
+reflectance is 0. A reflectance is 0 for a film with index of refraction 1, at Brewster's angle, and
+if film and substrate have the same index of refraction.
 """
 
 from __future__ import annotations

@@ -272,8 +272,7 @@ def _nodes(axes: int) -> tuple[Array, Array, Array]:
 
 
 PASSED_NODES = 40  # Chebyshev nodes in the cube root of mu (1 + scale) / (mu + scale)
-# `scale` is the larger of alpha and LEAST_SCALE. If `scale` were near 0, all nodes would be near
-# grazing.
+# Lower limit of `scale`. If `scale` were near 0, all nodes would be near the horizon.
 LEAST_SCALE = 0.05
 
 

@@ -27,10 +27,10 @@ _LARGEST = float(np.finfo(np.float64).max)
 _BELOW_ONE, _ABOVE_ZERO = float(np.nextafter(1.0, 0.0)), float(np.nextafter(0.0, 1.0))
 _SHARE = (0.0, 1.0, "[0, 1]")
 _POSITIVE = (0.0, 1e50, "[0, 1e50]")  # fourth powers fit into float64
-_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # exponents and squares fit into float64
+_WIDTH = (1e-12, 1e12, "[1e-12, 1e12]")  # arguments of exp and squares fit into float64
 _LENGTH = (1e-150, 1e150, "[1e-150, 1e150]")  # products and quotients fit into float64
 
-# A value outside one of these ranges by less than a rounding of float32 is clamped.
+# A value outside a range in CLOSED by less than a rounding of float32 is clamped.
 CLOSED = ("[0, 1]", "[0.01, 1]", "[1, 4]", "[-1, 1]", "[0, pi/2]")
 ROUNDING = 2.0**-23
 # Tolerance of the squared length of a direction. Directions rounded to float32 are accepted.

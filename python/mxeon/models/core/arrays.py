@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of all libraries that follow the array API standard, and differentiable functions.
+"""Conversion to libraries that follow the array API standard, and differentiable functions.
 
 A formula calls the standard's functions in the library of its arguments. The decorator `any_array` wraps public
 functions: if one argument is an array of PyTorch or JAX, all arguments are converted to that
@@ -157,7 +157,7 @@ def like(values: Numbers, array: Array) -> Array:
 
 
 def host_values(value: object) -> Numbers | None:
-    """Values of another library's array as a NumPy array; None while the array is traced."""
+    """Another library's array as a NumPy array, or None if the array is traced."""
     try:
         if library(value) != "torch":
             return np.asarray(value)

@@ -24,7 +24,7 @@ def evaluate(
 
     - `formula`: `formula(wo, wi, rho, *parameter)` computes one block, (C, ...). All arguments are
       float64: directions (..., 3) with contiguous components, `rho` (C, ...) and the parameter
-      (...). Axes of length 1 are not expanded, so terms that depend only on the material stay
+      (...). Axes of length 1 are not expanded, so arrays that depend only on the material stay
       small.
     - `rho` (..., C): N numbers with N directions are rejected as ambiguous, unless N is 1 or 3.
     - `name`: Name of `rho` in `RANGES` and in messages.
@@ -93,7 +93,7 @@ def evaluate_material(
         values = formula(
             **{name: parts[name][0] if name in numbers else parts[name] for name in parts}
         )
-        # A copy of each channel takes a quarter of the time of one transposed copy of all channels.
+        # Copying channel by channel takes a quarter of the time of one transposed copy.
         for channel, value in enumerate(np.broadcast_to(values, (channels, *values.shape[1:]))):
             out[block][..., channel] = value
     return out

@@ -96,8 +96,8 @@ def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 
-    MaterialX's shaders clamp s to [0, 1] and keep T_1, so a lobe scaled to 0 still darkens the
-    layer below. The specification does neither. [MaterialX2026], section `multiply`.
+    Unlike the specification, MaterialX's shaders clamp s to [0, 1] and keep T_1, so a lobe scaled
+    to 0 still darkens the layer below. [MaterialX2026], section `multiply`.
 
         >>> scaled = multiply(Bsdf(1.0, 0.5), 0.5)
         >>> float(scaled.value), float(scaled.throughput)

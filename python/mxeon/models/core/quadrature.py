@@ -27,7 +27,8 @@ def albedo_dir_quadrature(
 
     - `brdf`: `brdf(wo, wi, rho, *parameter)` in 1/sr; any function of `mxeon.models`.
     - `mu` (...), `rho` (..., C): Cosine of the polar angle of wo, and reflectance per channel, in [0, 1].
-    - `nodes`: Gauss-Legendre nodes per interval; each angle has two intervals. Time grows as `nodes` squared.
+    - `nodes`: Gauss-Legendre nodes per interval; each angle has two intervals. The time grows as
+      `nodes`^2.
 
     The absolute error is below 1e-12 for the models of this package. The intervals end at the
     models' kinks, theta_i = theta_o and cos(phi) = 0. Nodes are dense just below theta_o, where the

@@ -24,10 +24,9 @@ turn about the normal maps the surface onto itself.
 - `compensate`: Whether to apply the energy compensation. The BRDF without compensation is
   reciprocal.
 
-Result (..., C): An albedo, or the BRDF in 1/sr, which is at least 0 and has no upper bound at
-grazing angles and for small alpha.
-Raises `ValueError`, which names the first bad element, if an argument leaves its range or the
-shapes do not broadcast.
+Result (..., C): An albedo, or the BRDF in 1/sr. The BRDF is at least 0 and has no upper bound at
+grazing angles and for small alpha. Raises `ValueError`, which names the first bad element, if an
+argument leaves its range or the shapes do not broadcast.
 """
 
 from __future__ import annotations

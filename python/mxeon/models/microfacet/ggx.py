@@ -20,7 +20,7 @@ shapes do not broadcast.
 scattering. This quotient comes from a table that is computed once. The table has Chebyshev
 polynomials in sqrt(alpha) and in the cube root of s = mu (1 + alpha) / (mu + alpha), which lies in
 [0, 1]. E_ss is a smooth function of sqrt(alpha) and s, except for terms like s log(s). As functions
-of the cube root of s, these terms are smooth enough.
+of the cube root of s, these terms are smooth enough for polynomials.
 """
 
 from __future__ import annotations

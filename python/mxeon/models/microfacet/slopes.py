@@ -52,7 +52,7 @@ class Slopes:
 
     @classmethod
     def seen(cls, wo: Array, roughness: Array) -> Slopes:
-        """The slopes visible from `wo`, shape (3, ...)."""
+        """The slopes visible from `wo` (3, ...)."""
         (x, y, _), (alpha_x, alpha_y) = wo, roughness
         xp, A = array_namespace(wo, roughness), hypot(x * alpha_x, y * alpha_y)
         tilted, length = A > 0.0, xp.where(A > 0.0, A, 1.0)
@@ -122,7 +122,8 @@ class Slopes:
             masking = mu_i * (self.mu_o + length_o) / (length_o * mu_i + length_i * self.mu_o)
             seen = 2.0 * lean / (self.mu_o + hypot(self.mu_o, self.steepness))
             return cosine, _density(r) * seen * masking
-        # Tangent and bitangent components of wi = 2 (wo . h) h - wo, each multiplied by its alpha.
+        # Tangent and bitangent components of wi = 2 (wo . h) h - wo, times alpha_x and alpha_y,
+        # respectively.
         along, across = (
             alpha * double * r * each - of_wo
             for alpha, each, of_wo in zip(self.roughness, slope, self.stretched, strict=True)
@@ -322,7 +323,7 @@ def _crowded(panels: int, nodes: int, array: Array) -> tuple[Array, Array]:
 
 
 def _quadrants(scale: Array, isotropic: bool) -> tuple[Array, Array]:
-    """Nodes and weights in omega, shape (1, n, ...), which are denser towards right angles.
+    """Nodes and weights in omega, shape (1, n, ...). The nodes are denser towards right angles.
 
     Isotropic surfaces need only half the nodes.
     """

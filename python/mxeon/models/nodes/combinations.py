@@ -144,8 +144,8 @@ def _clamped(combine: Callable[..., Bsdf], layered: bool) -> tuple[Variant[Scatt
     """The variant in which the albedo of a sum is clamped to 1.
 
     MaterialX's `add` clamps the throughput to at least 0. The specification does not define the
-    throughput of a sum, but does define a layer that reflects more light than it receives. So the
-    variant is wrong if the sum lies over a base, that is, if `layered` is true.
+    throughput of a sum, but does define layers that reflect more light than arrives. So the variant
+    is wrong if the sum lies over a base, that is, if `layered` is true.
     """
     clamped = partial(
         combine, finish=lambda lobe: replace(lobe, throughput=np.maximum(lobe.throughput, 0.0))

@@ -25,7 +25,7 @@ Value = Callable[[Inputs], Array]
 
 @dataclass(frozen=True)
 class Medium(Node[Value]):
-    """A VDF node, represented by its transmittance.
+    """A VDF node, represented by the transmittance of the medium.
 
     - `inputs`: Inputs that affect the transmittance. Anisotropy is left out, because anisotropy
       only affects the light scattered into a ray.

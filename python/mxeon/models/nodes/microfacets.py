@@ -43,7 +43,7 @@ class MicrofacetLobe:
     edge: str = ""  # input for F at grazing incidence; "" if this F is always 1
 
     def value(self, wo: Array, wi: Array, inputs: Inputs, terms: Lobe | None = None) -> Array:
-        """BRDF of the node. With `terms` instead of the specification's lobe, a film is ignored."""
+        """BRDF of the node. If `terms` replace the specification's terms, a film is ignored."""
         if terms is None and _has_film(inputs):
             return thin_film.film_brdf(self.category, wo, wi, inputs)
         return node_brdf(self.category, wo, wi, inputs, terms)

@@ -84,7 +84,7 @@ def _burley_aspect(inputs: Inputs) -> dict[str, Array]:
 
 
 def _openpbr_aspect(inputs: Inputs) -> dict[str, Array]:
-    """Roughnesses alpha of OpenPBR, whose mean square does not depend on the anisotropy."""
+    """Roughnesses alpha of OpenPBR. The mean of alpha^2 does not depend on the anisotropy."""
     rest = 1.0 - _clamped(inputs, "anisotropy")
     along = np.square(_roughness(inputs)) * np.sqrt(2.0 / (1.0 + rest * rest))
     return {"out": np.stack([along, rest * along], axis=-1)}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenPBR Surface 1.1.1 by the equations of its section "Reduction to a mixture of lobes".
+"""OpenPBR Surface 1.1.1 by the equations of the section "Reduction to a mixture of lobes".
 
     f_surface        = F f_fuzz + lerp(1, 1 - E[white f_fuzz], F) f_coated-base
     f_coated-base    = C f_coat + lerp(1, T_coat (1 - E[f_coat]), C) Delta f_base
@@ -100,7 +100,7 @@ def specular_eta(p: Parameters) -> Array:
 
 
 def modulated_eta(p: Parameters) -> Array:
-    """Relative index of refraction for the base's reflectance scaled by `specular_weight`."""
+    """Relative index of refraction for the base's reflectance times `specular_weight`."""
     eta = specular_eta(p)
     scaled = np.minimum(p["specular_weight"] * lobes.f0_from_ior(eta), MOST_REFLECTIVE)
     epsilon = np.sign(eta - 1.0) * np.sqrt(scaled)
