@@ -86,7 +86,7 @@ def slug(text: str) -> str:
 
 
 def change(stock: Codes, eonlib: Codes) -> tuple[float, float]:
-    """Largest signed change of a picture, relative to white, and fraction of visible changes."""
+    """Largest signed change of a picture, relative to white, and fraction of changed pixels."""
     changed = difference(srgb_decoded(eonlib / 255.0), srgb_decoded(stock / 255.0))
     largest = changed.flat[np.abs(changed).argmax()]
     return float(largest), float(np.mean(np.abs(changed) > VISIBLE))

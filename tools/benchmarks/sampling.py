@@ -5,7 +5,7 @@
 
 The variance of a sample's weight is an integral over the hemisphere, computed by Gauss-Legendre
 rules between the kinks of EON. LTC, and CLTC without uniform sampling, have infinite variance,
-because their density is 0 along a line where EON is positive.
+because the density of samples is 0 along a line where EON is positive.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from mxeon.models.diffuse import eon_brdf
 from mxeon.models.sampling import eon_pdf
 from tools.paper.samplers import BY_NAME, moments
 
-COSINES = np.linspace(0.01, 1.0, 100)  # cosine sampling has infinite variance at 0
+COSINES = np.linspace(0.01, 1.0, 100)  # cosine sampling: infinite variance at mu = 0
 ROUGHNESSES = (0.01, 0.1, 0.5, 0.75, 1.0)
 VIEWS = (1.0, 0.3, 0.1)
 PRINTED = ("uniform", "cosine", "eon_cltc", "eon")

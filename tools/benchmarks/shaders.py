@@ -2,7 +2,7 @@
 """Measures the time of a call of EON from eonlib and from stock MaterialX in a compute shader.
 
 Times are nanoseconds per call in an invocation. Each invocation calls a function many times with
-unpredictable arguments, and stores the sum. The time of a loop that only adds the arguments is
+unpredictable arguments, and sums the values. The time of a loop that only adds the arguments is
 subtracted. The first value of each invocation is compared with a float64 value.
 """
 
@@ -50,8 +50,8 @@ CALLS = {
     "stock": "mx_oren_nayar_compensated_diffuse(mu_o, mu_i, cosine, roughness, rho) / EON_PI",
     "eonlib": "eon_brdf_mu(mu_o, mu_i, cosine - mu_o * mu_i, rho, roughness)",
 }
-# Tolerances of pi f cos in float32. Stock MaterialX computes E with errors of up to 1.3e-4, because
-# digits cancel in Listing 1. So the value has errors of up to 3.61 x 0.29 x 1.3e-4 x 2.
+# Tolerances of pi f cos in float32. Stock MaterialX follows Listing 1 of [Portsmouth2025], in which
+# digits cancel, so E has errors of 1.3e-4, and the value has errors of 3.61 x 0.29 x 1.3e-4 x 2.
 TOLERANCES = {"stock": 3e-4, "eonlib": diffuse.VALUE.value}
 
 

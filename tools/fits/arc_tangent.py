@@ -6,8 +6,8 @@
 The shaders' `oren_nayar_angle` uses the coefficients on [0, tan(pi / 8)] in float32.
 
 The polynomial equals atan(t) / t at the roots of a Chebyshev polynomial in t^2. The coefficients
-are computed with 40 digits. The singularity of atan(t) / t next to the interval is at t^2 = -1, so
-each additional term reduces the error by a factor of 25.
+are computed with 40 digits. The singularity of atan(t) / t closest to the interval is at t^2 = -1,
+so each additional term reduces the error by a factor of 25.
 """
 
 from tools.fits.minimax import mp, roots

@@ -3,8 +3,8 @@
 
     H(mu) = mu [P(mu) + (1 - S)(1 - mu) Q(mu)],  S = sqrt(1 - mu^2)
 
-H has a branch point at mu = 1, as S has, so errors decrease geometrically with the degrees of P and
-Q. The term with Q vanishes at mu = 0 and at mu = 1, so no digits cancel there. P and Q together
+H and S have a branch point at mu = 1, so errors decrease geometrically with the degrees of P and Q.
+The term with Q vanishes at mu = 0 and at mu = 1, so no digits cancel there. P and Q together
 minimize the largest relative error of H.
 
     python -m tools.fits.fon_loss

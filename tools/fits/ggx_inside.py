@@ -8,7 +8,7 @@ the critical angle: tau_c^2 = (1 - n^2) / n^2. The fraction of facets below the 
     S = (1 + v / sqrt(1 + v^2)) / 2,  v = k (tau_m / tau_c - tau_c / tau_m),
 
 and the fraction of transmitted light is S^p (1 - F). F is the reflectance at a value of tau that a
-fraction Q of the facets exceeds. Q is proportional to S, and the distribution of S determines tau:
+fraction Q of the facets exceeds. Q is proportional to S, and tau solves Q = S with tau_c = tau:
 
     k (tau_m / tau - tau / tau_m) = w = (Q - 1/2) / sqrt(Q (1 - Q)),
     2 k tau / tau_m = sqrt(w^2 + 4 k^2) - w.

@@ -126,7 +126,7 @@ def fits():
 
 
 def errors(shader, seed):
-    """By name, the largest errors of values and albedos in a random set, and errors of means."""
+    """By name, the largest errors of values and albedos in a random set, and of mean values."""
     token = SEED.set(seed)
     [batch] = batches = shader.batches(shader.counts)
     [views] = shader.views(batches, shader.counts)

@@ -69,7 +69,7 @@ def facets():
 
     first = errors(start)
     slopes = [(errors(start + NEAR * axis) - first) / NEAR for axis in np.eye(len(start))]
-    # Additional rows keep coefficients that the films do not determine near `start`.
+    # These rows keep a coefficient near `start` if the films do not determine the coefficient.
     rows = TIE * moment_rows(*grid())
     matrix = np.concatenate([np.stack(slopes, 1), rows])
     change = np.linalg.lstsq(matrix, np.append(-first, np.zeros(len(rows))), rcond=None)[0]

@@ -5,8 +5,8 @@ In `dielectric_over_eon`, EON receives the light that the dielectric does not re
 from EON leaves. `varnished` has closed forms for light that leaves and for internal reflections.
 The random walks visit EON and GGX facets, and go from facet to facet as in [Heitz2016], so the
 interface loses no light. For each rho, the script prints the ratios of both models' albedos to the
-albedo of the walks, and the largest error of `varnished`. The hemisphere is also divided into
-twelve bins. The script prints the ratios of `varnished` to the walks for light from EON in a bin.
+albedo of the walks, and the largest error of `varnished`. The script also
+prints the ratios of `varnished` to the walks for light from EON in twelve bins of the hemisphere.
 """
 
 from itertools import product
@@ -18,7 +18,7 @@ from mxeon.models.microfacet.fresnel import dielectric
 from mxeon.models.sampling import eon_sample, visible_normal
 
 SEED, PATHS = 1, 1 << 18
-FAINT = 1e-5  # paths with a smaller weight end
+FAINT = 1e-5  # paths end if the weight is smaller
 RHO = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
 BINS, NODES = (4, 3), 8  # bins of squared cosine and of azimuth, and nodes per bin
 COSINES, ROUGHNESSES = (1.0, 0.5, 0.15, 0.05), (0.0, 1.0)
@@ -28,7 +28,7 @@ ALPHAS, INDICES = (0.05, 0.1, 0.2, 0.4, 0.7), (1.1, 1.3, 1.5, 2.0)
 def interface(w, alpha, ior, rng):
     """Directions with z >= 0 in which paths from w leave, and whether each path is transmitted."""
     out, transmitted = np.zeros_like(w), np.zeros(len(w), bool)
-    # A path has an index, a direction, a height and a flag, which is set below the interface. The
+    # A path has an index, a direction, a height, and a flag that is set below the interface. The
     # height is the fraction of facets that are lower than the path.
     i, d, height, below = np.arange(len(w)), -w, np.ones(len(w)), transmitted.copy()
     while i.size:

@@ -38,7 +38,7 @@ SAMPLERS = (
     Sampler("eon", sampling.eon_sample, sampling.eon_pdf, "exact"),
 )
 BY_NAME = {sampler.name: sampler for sampler in SAMPLERS}
-# The variance of EON's exact sampler is not 0, because two fits change the density by up to 1.3e-5.
+# EON's exact sampler has a positive variance, because fits change the density by up to 1.3e-5.
 EXACT_VARIANCE = 1.7e-10
 
 

@@ -135,7 +135,7 @@ def label(image, place, text, size=22, anchor="ls"):
 
 
 def save(path, pictures, difference_map):
-    """Save pictures side by side, with an inset that shows a visible difference."""
+    """Save pictures side by side, with an inset if the difference is visible."""
     image = Image.new("RGB", (SIZE * len(pictures), SIZE))
     for number, each in enumerate(pictures):
         image.paste(each, (number * SIZE, 0))

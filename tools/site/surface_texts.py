@@ -58,7 +58,7 @@ NOT_JUDGED = (
 def rows(
     text: Text, results: Mapping[str, Mapping[str, Result]], verdicts: Verdicts
 ) -> Iterator[str]:
-    """Table rows of a specification, with the verdict on gl and verdicts that differ elsewhere."""
+    """Table rows of a specification, with the verdict on gl and any different verdicts."""
     for spec in (each for each in SENTENCES if each.text is text):
         places: dict[str, list[str]] = defaultdict(list)
         for place, verdict in verdicts[spec.title].items():

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs checks on mutants of eonlib, and writes the checks that detect mutants to out/mutants.
+"""Runs checks on mutants of eonlib, and writes to out/mutants which check detects each mutant.
 
     python -m tools.benchmarks.mutants [--only PATTERN] [--resume]    mutants in `table/`
-    python -m tools.benchmarks.mutants --seed N [--share 0.1]         random mutants by operators
+    python -m tools.benchmarks.mutants --seed N [--share 0.1]         random mutants of operators
 
 A survivor is a mutant that no check detects. The exit status is 0 if the survivors are exactly the
 known survivors, otherwise 1.

@@ -28,13 +28,13 @@ class Mutant:
     name: str  # unique name in the table
     group: str  # title of the mutated implementation
     file: str  # path of the mutated file from the root
-    old: str  # text to replace, which occurs once in the file
+    old: str  # text to replace; must occur once in the file
     new: str  # replacement of `old`
     reason: str  # why the change is wrong, or why values stay the same
     host: str  # cheapest host that detects the mutant; "text" if no host is needed
     equivalent: bool  # whether no valid input reveals the change
     survives: bool  # whether the mutant is known to pass all checks
-    tests: tuple[str, ...] = ()  # tests to run first if the reference is wrong
+    tests: tuple[str, ...] = ()  # tests to run first if the reference is mutated
     operator: str = ""  # name of the operator that made the mutant
     place: tuple[int, int] = (0, 0)  # start and end of the mutated code in `file`
 

@@ -128,7 +128,7 @@ def mutants_of(file: str) -> Iterator[Mutant]:
 
 
 def code_of(text: str) -> str:
-    """A source in which comments, includes and inactive code are replaced by blanks."""
+    """Source code in which comments, includes and inactive code are replaced by blanks."""
     return COMMENT.sub(lambda match: re.sub(r"\S", " ", match[0]), text)
 
 

@@ -72,7 +72,7 @@ class Edit:
 
 
 def edits(number: int, mutant: Mutant, code: str) -> list[Edit]:
-    """Edits that add a mutant to a source, or no edits if a uniform cannot select the mutant."""
+    """Edits that add a mutant to a shader, or no edits if a uniform cannot select the mutant."""
     operator, (start, end), on = mutant.operator, mutant.place, f"(mutant == {number})"
     found, put = code[start:end], operators.changed(mutant.operator, code[start:end])
 
@@ -261,7 +261,7 @@ Subject = tuple[str, bool, str, Checks]
 
 
 def trials(mutants: Sequence[Mutant]) -> dict[str, str]:
-    """By mutant, SURVIVED, UNWRITTEN, or the check and the subject that detect the mutant."""
+    """Results by mutant: SURVIVED, UNWRITTEN, or the check and subject that detect the mutant."""
     twins = [each for each in mutants if each.file in OSL_TWINS]
     glsl = [each for each in mutants if each.file.startswith("genglsl/")]
     numbered = dict(enumerate((m for m in glsl if not m.file.startswith(NOT_CHECKED)), 1))
@@ -321,7 +321,7 @@ def subjects(host: SchemataHost) -> Iterator[Subject]:
 
 
 def node_checks(case: Case, turn: int) -> Checks:
-    """A function that runs the group of a node's checks with the number `turn`, 0, 1 or 2."""
+    """A function that runs one of three groups of a node's checks. `turn` selects the group."""
 
     @cache
     def rows() -> list[tuple[Check, Tolerance]]:
@@ -354,7 +354,7 @@ class Functions:
             self._rows.append((row.key, probe.tolerance(row), scale, scale * values[::STRIDE]))
 
     def execute(self, source: str, function: str, *arguments: ArrayLike) -> Array:
-        """Execute a call. If the call is of all functions, store the call with fewer points."""
+        """Execute a call. A call of all functions is also stored, with every STRIDE-th point."""
         if function == functions.EACH:
             self._call = source, function, *(np.asarray(each)[::STRIDE] for each in arguments)
         return self._host.execute(source, function, *arguments)

@@ -40,7 +40,7 @@ TEXT, TESTS = "text", "tests"  # values of `host` if no host is needed
 
 PATH = "genglsl/path/"  # code for path tracers; no check runs this code
 # Tests by folder of the mutated file. For PATH, the tests replace the checks. For other folders,
-# the tests run after the checks, which cannot detect some mutants.
+# the tests run after the checks, because the checks cannot detect some mutants.
 FOLDER_TESTS = {
     PATH: ("tests/shaders/test_path_tracing.py",),
     "genosl/cycles/": ("tests/hosts/test_osl.py",),  # runs Blender's OSL
@@ -131,7 +131,7 @@ def failures_of(tasks: Sequence[Task], judge: Judge) -> list[Result]:
 
 
 def _failed(task: Task, judge: Judge) -> dict[tuple[str, str], Result]:
-    """Results with a verdict other than PASSED in a task, by check and subject."""
+    """Results of a task by check and subject, except results with the verdict PASSED."""
     results = judge.work(task).results
     return {(each.check, each.subject): each for each in results if each.verdict != PASSED}
 

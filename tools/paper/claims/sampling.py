@@ -117,7 +117,7 @@ def gain() -> Measured:
     most=1.0,
 )
 def low_roughness() -> Measured:
-    """Mean variance of CLTC plus uniform sampling, divided by that of cosine sampling."""
+    """Mean variance of CLTC plus uniform sampling, relative to cosine sampling."""
     weight = np.sin(np.radians(2.0 * DEGREES))
     parts, ratios = [], []
     for r in (0.02, 0.05, 0.1, 0.2):

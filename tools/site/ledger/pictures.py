@@ -106,7 +106,7 @@ PAGES = {
 
 
 def draw(folder: str, *pages: str) -> None:
-    """Render the pictures of pages with the MaterialX that this process imports, as arrays."""
+    """Render pages' pictures with the MaterialX of this process, and save pictures as arrays."""
     scenes = {each.name: each for each in SCENES}
     with open_host("gl") as host:
         for page in pages:
