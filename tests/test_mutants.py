@@ -69,6 +69,10 @@ def test_a_tenth_of_the_operators_mutants_is_noticed_but_for_those_that_are_list
     assert len(found) > 0.75 * len(tenth) and len(unwritten) < 0.05 * len(found)
 
 
+def test_mutants_of_rough_diffuse_nodes_are_not_judged_by_combinations_alone():
+    assert trial.changed_nodes(NAMED["throughput above 1"]) == set()
+
+
 @pytest.mark.parametrize(("name", "check"), SLICE.items())
 def test_mutant_is_killed_by_the_check_meant(gl, judge, name, check):
     with trial.wrong_library(NAMED[name]) as path:

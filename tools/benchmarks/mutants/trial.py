@@ -229,7 +229,7 @@ def _titles(nodedef: str) -> frozenset[str]:
     titles = {spec.title for spec in PBRLIB if spec.node == node}
     for word in ("EDF", "VDF"):  # nodes such as `add` have several types
         titles = {title for title in titles if (word in title.upper()) == (word == kind)}
-    if kind == "BSDF":
+    if kind == "BSDF" and titles:  # a rough diffuse node has none here, and is judged by `stages`
         combined = (spec for spec in PBRLIB if spec in COMBINED_SPECS)
         titles |= {spec.title for spec in combined if f"<{node} " in spec.document()}
     return frozenset(titles)
