@@ -47,6 +47,36 @@ def test_the_shader_ball_is_drawn_at_its_points(gl):
     assert np.abs(image - cosine * [0.8, 0.4, 0.1]).max() <= PICTURE
 
 
+DEFAULT = '<input name="default" type="color3" value="0.8, 0.4, 0.1"/>'
+PROPERTY = '<input name="geomprop" type="string" value="{}"/>'
+SOURCES = {
+    "image": f'<image name="s" type="color3">{DEFAULT}</image>',
+    "property": f'<geompropvalue name="s" type="color3">{PROPERTY.format("Cd")}{DEFAULT}'
+    "</geompropvalue>",
+}
+
+
+@pytest.mark.parametrize("source", SOURCES.values(), ids=SOURCES)
+def test_what_a_shape_or_an_image_lacks_is_the_default(gl, source):
+    front = Scene("front", light=(0.0, 0.0, 1.0), environment=0.5)
+    color = lobe(color=ROUGH["color"])
+    image, expected = (
+        picture(gl, nodes, front) for nodes in (source + connected(color='nodename="s"'), color)
+    )
+    assert np.abs(image - expected).max() <= PICTURE
+
+
+def test_a_pair_of_numbers_on_the_shape_is_its_texture_coordinates(gl):
+    swizzle = '<convert name="s" type="color3"><input name="in" type="vector2" nodename="st"/>'
+    property_ = f'<geompropvalue name="st" type="vector2">{PROPERTY.format("st")}</geompropvalue>'
+    image, expected = (
+        picture(gl, f"{node}{swizzle}</convert>" + connected(color='nodename="s"'), FRONT)
+        for node in (property_, '<texcoord name="st" type="vector2"/>')
+    )
+    assert image.max() > 0.1
+    np.testing.assert_array_equal(image, expected)
+
+
 def test_a_texture_stands_upright(gl, reference, tmp_path):
     texels = np.zeros((8, 16, 3), dtype=np.float32)
     texels[:4, :, 0], texels[4:, :, 2] = 0.9, 0.6  # red at the top, blue at the bottom

@@ -87,7 +87,8 @@ class GlHost(FragmentHost):
         captured, frame = points.outputs(shader), points.frame(seen)
         bound = self._textures(program, textures)
         if captured:
-            bound[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
+            given = points.constants(shader)
+            bound[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen, given)
         return self._draw(program, bound, frame, parts)[::-1]
 
     @_current
@@ -228,9 +229,10 @@ def _points(
     vertex: str,
     captured: tuple[points.Output, ...],
     seen: VisiblePoints,
+    constants: points.Constants,
 ) -> moderngl.TextureArray:
     program = context.program(vertex_shader=vertex, varyings=tuple(each.name for each in captured))
-    vertices = points.vertices(seen)
+    vertices = points.vertices(seen, constants)
     count = len(vertices["i_position"])
     stage = context.vertex_array(program, _buffers(context, program, vertices))
     buffer = context.buffer(reserve=count * points.stride(captured))

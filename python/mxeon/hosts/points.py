@@ -16,13 +16,16 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeAlias, cast
 
+import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.fragment import renamed
 from mxeon.hosts.mesh import mesh_points_at
 from mxeon.io.images import Floats
+from mxeon.shaders.document.values import plain
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import SHAPES, VisiblePoints, pixel_centers, sphere_at, tangents
 from mxeon.shaders.shader_ball import shader_ball_at
@@ -36,6 +39,10 @@ VARIABLES = {
     "glsl": "#define VertexData mxeon_Inputs { float mxeon_unused; } mxeon_inputs; struct VertexData\n",
     "essl": "#define in\n",
 }
+# Names and values of vertex attributes; () stands for the shape's texture coordinates.
+Constants: TypeAlias = tuple[tuple[str, tuple[float, ...]], ...]
+ATTRIBUTE = re.compile(r"^in (float|vec\d) i_(color|geomprop|texcoord)_(\w+);", re.MULTILINE)
+WHITE, BLACK = (1.0,) * 4, (0.0,)
 FORMATS = {"float": "f4", "vec2": "2f4", "vec3": "3f4", "vec4": "4f4", "int": "i4"}
 
 
@@ -89,15 +96,37 @@ def visible_at(x: Floats, y: Floats, shape: str) -> VisiblePoints:
     return mesh_points_at(shape, x, y)
 
 
-def vertices(points: VisiblePoints) -> dict[str, NDArray[np.float32]]:
+def constants(shader: Shader) -> Constants:
+    """Values of the attributes that no shape has: white vertex colors and geometric properties.
+
+    A property has the default of its node. Pairs of numbers are texture coordinates, as USD's `st`;
+    their value is (). Integers stay 0.
+    """
+    document, defaults = shader.document, dict[str, tuple[float, ...]]()
+    for node in document.traverseTree():
+        if node.getCategory() == "geompropvalue" and (name := node.getInputValue("geomprop")):
+            value = plain(node.getInputValue("default"), document)
+            numbers = value if isinstance(value, tuple) else (value or 0.0,)
+            defaults.setdefault(mx.createValidName(str(name)), cast(tuple[float, ...], numbers))
+    constants = []
+    for size, kind, name in ATTRIBUTE.findall(shader.stages["vertex"]):
+        value = WHITE if kind == "color" else defaults.get(name, BLACK)
+        on_shape = size == "vec2" or kind == "texcoord"
+        constants.append((f"i_{kind}_{name}", () if on_shape else value))
+    return tuple(constants)
+
+
+def vertices(points: VisiblePoints, constants: Constants) -> dict[str, NDArray[np.float32]]:
     """Vertex attributes of the points of a frame, row by row from the top."""
     flat = points.normal.reshape(-1, 3)
     attributes = {
         "i_position": points.position.reshape(-1, 3),
         "i_normal": flat,
         "i_tangent": tangents(flat) if points.tangent is None else points.tangent.reshape(-1, 3),
-        "i_texcoord_0": points.texcoord.reshape(-1, 2),
     }
+    for name, value in constants:
+        shown = points.texcoord.reshape(-1, 2)
+        attributes[name] = np.tile(value, (len(flat), 1)) if value else shown
     return {name: values.astype("f4") for name, values in attributes.items()}
 
 

@@ -17,7 +17,7 @@ from mxeon.hosts.base import TABLE, Array, Query
 from mxeon.hosts.points import MARGIN, visible
 from mxeon.hosts.textures import image_files, irradiance, read_latlong, read_texture
 from mxeon.shaders.document.values import Plain, flat
-from mxeon.shaders.generation import Shader
+from mxeon.shaders.generation import Input, Shader
 from mxeon.shaders.inner_lobes import SUBSURFACE, TRANSMISSION, VOLUME, inner_lobes
 from mxeon.shaders.methods import GENERATED, TABLE_SIZE
 from mxeon.shaders.scene import SIDE, Client, Lamp, Scene, VisiblePoints
@@ -72,13 +72,21 @@ def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
 
 
 def images(shader: Shader) -> dict[str, Array]:
-    """Texels of the images of a shader's document, by sampler."""
+    """Texels of the images of a shader's document, by sampler.
+
+    An image without a file is its node's `default`, as MaterialX's renderer binds it, or black.
+    """
     pixels = {name: read_texture(name) for name in image_files([shader])}
-    return {
-        port.name: pixels[str(port.value)]
-        for port in shader.inputs
-        if port.type == "filename" and port.value
-    }
+    values = {port.path: port.value for port in shader.inputs}
+
+    def texels(port: Input) -> Array:
+        if port.value:
+            return pixels[str(port.value)]
+        color = values.get(f"{port.path.rpartition('/')[0]}/default") or 0.0
+        texel = [*(color if isinstance(color, tuple) else [color] * 3), 0.0, 0.0]
+        return np.tile(np.array(texel[:4], np.float32), (2, 2, 1))
+
+    return {port.name: texels(port) for port in shader.inputs if port.type == "filename"}
 
 
 def environment(irradiance: Array | None) -> dict[str, Array]:
@@ -209,7 +217,13 @@ class FragmentHost(base.Host):
         raise self._unsupported("pictures of a sphere", "gl")
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        return approximations(shader)
+        missing = sorted(
+            name.removeprefix("i_geomprop_")
+            for name, value in points.constants(shader)
+            if value and "geomprop" in name
+        )
+        note = f"no shape has the property {', '.join(missing)}: its node's default is drawn"
+        return (*approximations(shader), *([note] if missing else ()))
 
     def _values(self, query: Query) -> Array:
         pixel, arguments = fragment.bsdf_evaluation(query)

@@ -166,7 +166,8 @@ class WebGlHost(Chromium, raster.FragmentHost):
         images = re.findall(pattern, shader.stages["pixel"], re.MULTILINE)
         placed = {name: calls.PLACED[kind] for name, kind in images}
         if captured:
-            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen)
+            given = points.constants(shader)
+            textures[points.SAMPLER] = self._points(shader.stages["vertex"], captured, seen, given)
         pixel = points.pixel_stage(shader)
         drawn = raster.Frame(VERTEX, pixel, textures=textures, uniforms=placed | uniforms)
         return self._draw(drawn, frame)[::-1]
@@ -186,10 +187,14 @@ class WebGlHost(Chromium, raster.FragmentHost):
         return pixels.reshape(size[1], size[0], 4)[..., :3]
 
     def _capture(
-        self, vertex: str, captured: tuple[points.Output, ...], seen: VisiblePoints
+        self,
+        vertex: str,
+        captured: tuple[points.Output, ...],
+        seen: VisiblePoints,
+        constants: points.Constants,
     ) -> NDArray[np.float32]:
         """Texels of a vertex stage's outputs at the points of a picture."""
-        attributes = points.vertices(seen)
+        attributes = points.vertices(seen, constants)
         job = {
             "vertex": vertex,
             "outputs": [each.name for each in captured],
