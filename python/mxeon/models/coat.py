@@ -99,7 +99,7 @@ CACHED = 64  # maximum number of cached interfaces
 
 @dataclass(frozen=True)
 class Coat:
-    """Two functions of the viewer's cosine for a dielectric layer, as Chebyshev coefficients.
+    """Chebyshev coefficients of two functions of the viewer's cosine, for a dielectric layer.
 
     - `alpha`, `average`: GGX roughness and average reflectance F_ss.
     - `missing`, `reflected`: Chebyshev coefficients of (1 - E_ss) / E_ss and of E_r.
@@ -504,8 +504,8 @@ def varnish_curves(alpha: Array, ior: Array) -> tuple[list[Array], Array]:
     R = squared + xp.sum(total * share)
     H = xp.sum(weight * fon_loss_mu(beyond)) + xp.sum(total * share * fon_loss_mu(m))
 
-    # The integral of s / t over all azimuths is 2 S S' (1 / max(mu, mu') - 1). R(m) is the fraction
-    # of the light with the cosine m that is reflected back to EON. In terms of R(m),
+    # The integral of s / t over all azimuths is 2 S S' (1 / max(mu, mu') - 1). If R(m) is the
+    # fraction of the light with the cosine m that is reflected back to EON, then
     #   b mu' / S' = 2 / (pi R) [(1 - mu') int_0^mu' R(m) S m dm + mu' int_mu'^1 R(m) S (1 - m) dm],
     #   <b>_R = 8 / (pi R^2) int R(m) S (1 - m) [int_0^m R(x) S x dx] dm.
     S = root((1.0 - fine) * (1.0 + fine)) / ior

@@ -94,7 +94,7 @@ def fon_loss_mu(mu: Array) -> Array:
 
 
 def fon_loss_approx(mu: Array) -> Array:
-    """H(mu) by the quartic of [Portsmouth2025], Eq. (14), which is negative for mu < 0.0014."""
+    """Quartic approximation of H(mu), negative for mu < 0.0014: [Portsmouth2025], Eq. (14)."""
     m = 1.0 - mu
     g1, g2, g3, g4 = FON_G
     return C1 - m * (g1 + m * (g2 + m * (g3 + m * g4)))
@@ -430,7 +430,7 @@ def fon_loss(mu: ArrayLike) -> Array:
 
         H(mu) = c1 - G_F(mu) / pi,  1 - E_FON = roughness A H
 
-    Result (...): 0 at grazing, up to c1 = 1/2 - 2 / (3 pi) at normal incidence. Accuracy: the
+    Result (...): 0 at mu = 0, up to c1 = 1/2 - 2 / (3 pi) at normal incidence. Accuracy: the
     relative error is below 2e-15 for all mu. [Portsmouth2025], Eqs. (12), (13).
 
         >>> fon_loss([0.0, 0.5, 1.0]).round(6)
@@ -548,7 +548,7 @@ def qon_albedo_dir(mu: ArrayLike, sigma: ArrayLike) -> Array:
 
         E(mu) = A + B G(mu) / pi,  G = pi (c1 - H(mu)) + 2/3 sqrt(1 - mu^2)
 
-    Result (...): positive. Near grazing, the result is up to 1.02 for sigma < 0.6. Accuracy: the
+    Result (...): positive. Near mu = 0, the result is up to 1.02 for sigma < 0.6. Accuracy: the
     relative error is below 1e-15. [Portsmouth2025], Eqs. (5), (8).
 
         >>> qon_albedo_dir([0.0, 1.0], 0.5).round(6)

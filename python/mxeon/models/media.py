@@ -218,7 +218,7 @@ def diffusion_blur(mu: ArrayLike, reach: ArrayLike) -> Array:
 
 
 def blur_to(mu: Array, reach: Array, far: float) -> Array:
-    """`diffusion_blur` for valid arrays. In the specification's profile, `far` is FAR."""
+    """`diffusion_blur` for valid arrays. The specification's profile has `far` = FAR."""
     reach = reach[..., np.newaxis]
     (first, share_1), (second, share_2) = (_exponential(mu, each) for each in (reach, far * reach))
     total = 0.25 * share_1 + 0.75 * share_2

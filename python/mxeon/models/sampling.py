@@ -433,7 +433,7 @@ def ltc_transformed(wo: Array, wh: Array, roughness: Array, d: Array) -> tuple[A
 
 
 def _normalized(wo: Array, w: Array, pdf: Array) -> tuple[Array, Array]:
-    """Direction of w after a rotation to wo's azimuth, and the density pdf |w|^3."""
+    """Returns w / |w|, rotated to wo's azimuth, and the density pdf |w|^3."""
     length = root(array_namespace(w).sum(w * w, axis=-1))
     cosine, sine, _ = azimuth_frame(wo)
     return rotate_z(w / length[..., np.newaxis], cosine, sine), pdf * length**3

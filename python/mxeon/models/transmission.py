@@ -18,8 +18,8 @@ facets.
 - `color0`, `color82`, `color90` (..., C): Reflectance along the normal, multiplier at the angle
   acos(1/7), and reflectance at grazing incidence, per channel, in [0, 1]; a number is one channel.
 - `exponent` (...): Exponent of the Schlick curve, in [0, 1e50].
-- `reading`: A key of READINGS, a way to understand the specification of `generalized_schlick_bsdf`.
-  The reading determines the index of refraction, which the node lacks, and 1 - F.
+- `reading`: A key of READINGS. The reading of the specification of `generalized_schlick_bsdf`
+  determines 1 - F and the index of refraction, which the node lacks.
 - `shadow`: Whether facets on the far side shadow transmitted light, as in the BTDF. Without this
   shadowing, the transmitted fraction is the mean of 1 - F over the visible normals.
 - `inside`: Whether wo is inside the solid, where light is totally reflected beyond the critical

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of arguments (ranges, shapes, directions, choices), and division of arrays into blocks.
+"""Checks of arguments (ranges, shapes, directions, choices). Arrays are divided into blocks.
 
 Directions point away from the surface, in a local frame whose normal is +z.
 """

@@ -92,7 +92,7 @@ def add(in1: Bsdf, in2: Bsdf) -> Bsdf:
 
 
 def multiply(in1: Bsdf, weight: ArrayLike) -> Bsdf:
-    """A lobe scaled by `weight` s >= 0, which is one number, or one number per channel.
+    """A lobe scaled by `weight` s >= 0. The weight is one number, or one number per channel.
 
         f = s f_1,  T = 1 - s E_1 = 1 - s (1 - T_1)
 

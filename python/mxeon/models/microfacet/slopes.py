@@ -187,7 +187,7 @@ def transmitting_nodes(wo: Array, roughness: Array, squared: Array) -> tuple[Arr
 def refracting_nodes(
     wo: Array, roughness: Array, squared: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """wo . h, the cosine of the refracted wi, the stretched length of wi, and the weight of nodes.
+    """Returns wo . h, the cosine of wi, the stretched length of wi, and the weight of each node.
 
     With n^2 = 1 - squared and L = |wo + n wi|, the refracted wi = (L h - wo) / n points below the
     horizon if r exceeds the smaller root of mu_o^2 g r^2 - 2 mu_o B r + squared = mu_o^2.

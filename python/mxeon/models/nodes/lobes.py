@@ -210,10 +210,10 @@ LEAST_RADIUS = 0.1  # smallest radius of the diffusion profile
 
 
 def circle_blur(mu: Array, radius: Array, body: float = FLATTEST) -> Array:
-    """Cosine of a light, blurred along a circle as in MaterialX.
+    """Cosine of the light direction, blurred along a circle as in MaterialX.
 
-    The circle lies in the plane of light and normal. `mu` (N,) is the cosine, `radius` (N, 3) is
-    the mean free path, and `body` is the radius of the circle.
+    The circle lies in the plane of the light direction and the normal. `mu` (N,) is the cosine,
+    `radius` (N, 3) is the mean free path, and `body` is the radius of the circle.
     """
     theta = np.arccos(np.clip(mu, -1.0, 1.0))[:, np.newaxis]
     shape = 1.0 / np.maximum(radius, LEAST_RADIUS)

@@ -97,7 +97,7 @@ class Variant(Generic[Function]):
     value: Function | None = None  # None for the node's own function
     albedo: Callable[[Array, Inputs], Array] | None = None
     permitted: bool = False  # whether the specification permits the variant
-    anisotropic: bool = False  # whether `value` only differs for lobes with two different alphas
+    anisotropic: bool = False  # whether `value` has no effect if both alphas are equal
     above: bool = False  # whether `albedo` only determines how much the node darkens a lower layer
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Surface shaders by their specifications: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
+"""Surface shaders as specified: OpenPBR, Standard Surface, glTF and UsdPreviewSurface.
 
 Each module has the specification's `DEFAULTS`, a function `parameters` that fills in defaults, and the functions
 `surface` and `emission`, in float64:

@@ -108,7 +108,7 @@ class Light:
         return weight * f + (1.0 - weight * E) * base
 
     def through(self, share: ArrayLike) -> Array:
-        """Refracted radiance, (N, 3), from an environment: the fraction `share` of the light."""
+        """Radiance `share`, (N, 3), refracted from a white environment; 0 if `behind` is false."""
         light = 1.0 if self.behind else 0.0
         return np.broadcast_to(light * np.asarray(share), self.wo.shape)
 
