@@ -61,8 +61,8 @@ def walks(text, rng):
 
 
 if __name__ == "__main__":
-    # Columns of the printed table: the mean and the deviation of a walk's weight, and the largest
-    # weight of a sample.
+    # The table has the mean and the standard deviation of a walk's weight, and the largest weight
+    # of a sample.
     print("| node, alpha | mean | deviation | largest draw |\n|---|---|---|---|")
     for name, document in ROWS.items():
         total, largest = walks(paths(open_engine("gl"), document), np.random.default_rng(1))

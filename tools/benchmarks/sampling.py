@@ -60,7 +60,7 @@ def print_throughput():
 
 
 def print_lighting(name):
-    """Print a sampler's variance at roughness 1, divided by the variance of exact samples."""
+    """Print a sampler's variance at roughness 1, divided by the variance of the exact sampler."""
     rows = {}
     for title, light in RADIANCES.items():
         ratios = [

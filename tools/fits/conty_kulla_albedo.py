@@ -46,7 +46,7 @@ def albedo(mu, eighths):
     s, s_i = np.sqrt((1.0 - mu) * (1.0 + mu)), np.sqrt((1.0 - mu_i) * (1.0 + mu_i))
     M = mu + mu_i
     total = np.zeros_like(mu)
-    # The tangent of phi / 2 is x in [0, 1] if phi < pi / 2, and 1 / x if phi > pi / 2.
+    # The tangent of phi / 2 is x if phi < pi / 2, and 1 / x if phi > pi / 2, where x <= 1.
     for near, far in ((1.0, x * x), (x * x, 1.0)):
         half = near / (near + far)
         flat = (s - s_i) * (s - s_i) + 4.0 * s * s_i * half

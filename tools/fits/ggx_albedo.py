@@ -31,7 +31,7 @@ START = (
     *(0.225562, -0.0983618, 4.00769, 1.57355, 0.538882, -12.0367, -1.69065, -1.00164, 7.53262),
 )
 DEGREE, PANELS = 12, 10  # quadrature nodes per panel, and number of panels
-NEWTON = 6  # Newton steps from the asymptotic root to 40 digits
+NEWTON = 6  # Newton steps that refine an asymptotic root to 40 digits
 LEAST = 1e-4  # smallest alpha and cosine of the fit
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fit of the light that GGX facets transmit into a medium with a relative IOR n below 1.
+"""Fit of the fraction of light that GGX facets transmit if the relative IOR n is below 1.
 
 Facets beyond the critical angle reflect everything, so no single cosine can represent all facets.
 Let tau be the cotangent of the angle between wo and the normal of a facet, and let tau_c be tau at

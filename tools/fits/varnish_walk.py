@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compares models of EON below an interface with random walks: python -m tools.fits.varnish_walk.
 
-In `dielectric_over_eon`, EON receives the light that the dielectric does not reflect, and all light
-from EON leaves. `varnished` has closed forms for light that leaves and for internal reflections.
+In `dielectric_over_eon`, EON receives the light that the dielectric does not reflect, and no light
+from EON is reflected back. `varnished` has closed forms for transmission and internal reflections.
 The random walks visit EON and GGX facets, and go from facet to facet as in [Heitz2016], so the
 interface loses no light. For each rho, the script prints the ratios of both models' albedos to the
-albedo of the walks, and the largest error of `varnished`. The script also
-prints the ratios of `varnished` to the walks for light from EON in twelve bins of the hemisphere.
+albedo of the walks, and the largest error of `varnished`. The script also prints the ratios of
+`varnished` to the walks for the albedo due to EON in twelve bins of the hemisphere.
 """
 
 from itertools import product
@@ -78,7 +78,7 @@ def view(mu):
 
 
 def walked_bins(total, out):
-    """Light from EON in each bin and for each nonzero rho, computed by random walks, (12, 4)."""
+    """Albedo due to EON in each bin and for each nonzero rho, by random walks, (12, 4)."""
     azimuth = np.abs(np.arctan2(out[:, 1], out[:, 0])) / np.pi
     row, column = (
         np.minimum((x * n).astype(int), n - 1)
@@ -90,7 +90,7 @@ def walked_bins(total, out):
 
 
 def model_bins(mu, *inputs):
-    """Light from EON in each bin and for each nonzero rho, computed by `varnished`, (12, 4)."""
+    """Albedo due to EON in each bin and for each nonzero rho, by the model `varnished`, (12, 4)."""
     x, weight = (each / 2.0 for each in np.polynomial.legendre.leggauss(NODES))
     square, azimuth = ((np.arange(n)[:, np.newaxis] + 0.5 + x) / n for n in BINS)
     square, azimuth = square[:, np.newaxis, :, np.newaxis], np.pi * azimuth[:, np.newaxis]

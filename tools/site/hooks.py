@@ -12,7 +12,7 @@ from tools.site import explorer, field
 from tools.site.ledger.pages import filled
 
 ROOT = Path(__file__).resolve().parents[2]
-# Pages made from files outside `docs/`. Links in these files are relative to the root.
+# Pages made from files outside `docs/`. Links in these files are relative to the repository.
 OUTSIDE = {
     "index.md": "README.md",
     "changelog.md": "CHANGELOG.md",

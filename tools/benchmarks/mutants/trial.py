@@ -237,7 +237,7 @@ def _titles(nodedef: str) -> frozenset[str]:
 
 @cache
 def _sources(file: str) -> frozenset[str]:
-    """Paths of a source and of all files that the source includes, directly or indirectly."""
+    """Paths of a file and of all files that the file includes, directly or indirectly."""
     path = ROOT / file
     if not path.is_file():
         return frozenset()

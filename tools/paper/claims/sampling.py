@@ -99,7 +99,7 @@ def mixture_weight() -> Measured:
     least=100.0,
 )
 def gain() -> Measured:
-    """Variance of cosine sampling divided by the variance of CLTC plus uniform sampling."""
+    """Ratios of the variance of cosine sampling to the variance of CLTC plus uniform sampling."""
     parts, ratios = [], []
     for degrees in (60.0, 85.0, 89.0, 89.9, 90.0 - np.degrees(1e-6)):
         cosine, mixture = (
