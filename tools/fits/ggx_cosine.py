@@ -130,7 +130,7 @@ def averages(mu, alpha, functions):
 def azimuths(scale):
     """Quadrature nodes and weights on [0, 1], in panels with ends at 0 and scale^(k / 8).
 
-    In all panels but the first, Gauss's rule applies to 1 / x, which suits the tail of a peak at 0.
+    Gauss's rule applies to 1 / x in all panels but the first, because a peak at 0 has a long tail.
     """
     x, w = (each[None, :, None] for each in legendre(DEGREE))
     root = np.sqrt(np.sqrt(np.sqrt(scale)))

@@ -29,10 +29,10 @@ STEPS = 2  # Newton steps from coefficients with six digits; a third step change
 
 
 def least_largest(rows, right):
-    """Minimax solution x of rows @ x = right, and the largest residual. Rows are (M, N), M > N.
+    """Minimax solution x of rows @ x = right, and the largest residual.
 
-    Any N of the starting rows must be independent. Raises ArithmeticError if the exchange does not
-    converge.
+    `rows` has shape (M, N) with M > N. Any N of the starting rows must be independent. Raises
+    ArithmeticError if the exchange does not converge.
     """
 
     def signed(i, sign):

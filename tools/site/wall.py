@@ -148,7 +148,7 @@ def figure(
 
 
 def figures(name: str, reference: NDArray[np.floating], tiles: list[Tile]) -> str:
-    """HTML of the reference and the tiles, sorted by difference. Hosts with equal captions share a tile."""
+    """HTML of the reference and of the sorted tiles. Hosts with equal captions share a tile."""
     groups: dict[tuple[str, str], list[Tile]] = defaultdict(list)
     for each in sorted(tiles, key=lambda each: each.largest):
         groups[each.caption, each.verdict].append(each)
