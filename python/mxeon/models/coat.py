@@ -294,7 +294,7 @@ def dielectric_over_eon_sample(
     alpha: float,
     ior: float,
 ) -> tuple[Array, Array]:
-    """Direction sampled from the visible facets or from EON, and its density.
+    """Direction and density of a sample of the visible facets or of EON.
 
     `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...): p
     pdf_GGX + (1 - p) pdf_EON, in 1/sr. The facets are chosen with the probability p = E_r / E for
@@ -337,7 +337,7 @@ def dielectric_over_eon_pdf(
 
 
 def _facet_share(mu: Array, rho: Array, roughness: ArrayLike, coat: Coat) -> Array:
-    """Probability E_r / E of sampling the facets for a gray rho, or 0 if E is 0."""
+    """Probability of sampling the facets if rho is gray: E_r / E, or 0 if E is 0."""
     reflected = coat.at(mu)[1]
     base = eon_albedo_dir(mu, rho[..., np.newaxis], roughness)[..., 0]
     return reflected / nonzero(reflected + (1.0 - reflected) * base)
@@ -609,7 +609,7 @@ def varnished_albedo_avg(rho: ArrayLike, roughness: ArrayLike, alpha: float, ior
 def varnished_sample(
     wo: ArrayLike, u: ArrayLike, rho: ArrayLike, roughness: ArrayLike, alpha: float, ior: float
 ) -> tuple[Array, Array]:
-    """Direction sampled from the visible facets or from a cosine lobe, and its density.
+    """Direction and density of a sample of the visible facets or of a cosine lobe.
 
     `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
     1/sr. The facets are chosen with the probability E_single / E for the mean of rho's channels.
@@ -665,6 +665,6 @@ def _albedo(
 
 
 def _share(mu: Array, rho: Array, roughness: ArrayLike, alpha: float, ior: float) -> Array:
-    """Probability E_single / E of sampling the facets for a gray rho, or 0 if E is 0."""
+    """Probability of sampling the facets if rho is gray: E_single / E, or 0 if E is 0."""
     single, total = _albedo(mu, rho[..., np.newaxis], roughness, alpha, ior)
     return (single / nonzero(total))[..., 0]

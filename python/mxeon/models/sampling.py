@@ -68,7 +68,7 @@ from mxeon.models.sheen import zeltner_lobe, zeltner_matrix
 
 @any_array
 def uniform_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Uniform direction on the hemisphere, with z = u[..., 0], and its density.
+    """Direction and density of a uniform sample of the hemisphere, with z = u[..., 0].
 
     [Portsmouth2025], Listing 4.
 
@@ -93,7 +93,7 @@ def uniform_pdf(wi: ArrayLike) -> Array:
 
 @any_array
 def cosine_sample(u: ArrayLike) -> tuple[Array, Array]:
-    """Direction with z > 0 sampled in proportion to z, and its density: [Portsmouth2025], Eq. (21).
+    """Direction and density of a sample in proportion to z, for z > 0: [Portsmouth2025], Eq. (21).
 
     >>> wi, pdf = cosine_sample([0.36, 0.0])
     >>> wi.round(12), round(float(pdf), 6)
@@ -193,7 +193,7 @@ UPPER = (
 def eon_sample(
     wo: ArrayLike, u: ArrayLike, roughness: ArrayLike, *, rho: ArrayLike = 1.0
 ) -> tuple[Array, Array]:
-    """Direction sampled in proportion to EON times the cosine, and its density.
+    """Direction and density of a sample in proportion to EON times the cosine.
 
     `wi` (..., 3): Unit vectors, z >= 2^-53. `pdf` (...): `eon_pdf` of `wi`, in 1/sr. Accuracy: the
     relative difference between the true density of `wi` and `pdf` is below 1.3e-5. So a sample
@@ -372,7 +372,7 @@ def eon_flat_direction(
 
 @any_array
 def ltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled from the transformed cosine, possibly below the horizon, and its density.
+    """Direction and density of a sample of the transformed cosine, possibly below the horizon.
 
     `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
     1/sr. The probability of a wasted sample, (1 - 1/sqrt(1 + d^2))/2, is at most 0.0534, for a
@@ -454,7 +454,7 @@ def ltc_density(wo: Array, wi: Array, roughness: Array, d: Array) -> Array:
 
 @any_array
 def cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled from the clipped transformed cosine, and its density.
+    """Direction and density of a sample of the clipped transformed cosine.
 
     As a sampler of EON, CLTC is biased, because some directions into which EON reflects are never
     sampled. The lune d x + z < 0 lies at x > 0 for d < 0, which Listing 3 assumes, and at x < 0 for
@@ -488,7 +488,7 @@ def cltc_pdf(wo: ArrayLike, wi: ArrayLike, roughness: ArrayLike) -> Array:
 
 @any_array
 def eon_cltc_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled from the paper's mixture of CLTC and a uniform lobe, and its density.
+    """Direction and density of a sample of the paper's mixture of CLTC and a uniform lobe.
 
     `wi` (..., 3): Unit vectors on or above the horizon. `pdf` (...): Density of the mixture, in
     1/sr. Listing 4 of the paper selects the uniform lobe for u1 <= P_u and divides u1 by P_u. The
@@ -576,7 +576,7 @@ def cltc_clipped(u1: Array, u2: Array, d: Array, rest: Array | None = None) -> A
 
 @any_array
 def ggx_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction reflected by a visible GGX normal, possibly below the horizon, and its density.
+    """Direction and density of a reflection by visible GGX normals, possibly below the horizon.
 
     `wi` (..., 3): Unit vectors; a vector with z < 0 is a wasted sample of weight 0. `pdf` (...):
     1/sr. If an alpha is 0, no density exists, and `pdf` is 0. The weight of a sample, value times
@@ -654,7 +654,7 @@ def visible_normal(wo: Array, u1: Array, u2: Array, roughness: Array) -> Array:
 
 @any_array
 def zeltner_sample(wo: ArrayLike, u: ArrayLike, roughness: ArrayLike) -> tuple[Array, Array]:
-    """Direction sampled in proportion to the Zeltner lobe times the cosine, and its density.
+    """Direction and density of a sample in proportion to the Zeltner lobe times the cosine.
 
     The direction is always above the horizon. [MaterialX2026], Zeltner Sheen Model, section LTC
     Inverse Matrix.

@@ -253,7 +253,7 @@ class ShadingModel:
     def sample(
         self, wo: ArrayLike, u: ArrayLike, *inputs: ArrayLike, **named: ArrayLike
     ) -> tuple[Array, Array]:
-        """Directions sampled for the model, shape (..., 3), and their density in 1/sr, shape (...).
+        """Directions (..., 3) and densities (...), in 1/sr, of samples of the model.
 
         `u`, shape (..., 2), holds uniform random numbers in [0, 1). For EON, the samples are exact
         for the mean of the color's channels. For a mirror, which has roughness 0, value and density

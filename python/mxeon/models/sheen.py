@@ -106,7 +106,6 @@ def zeltner_matrix(mu: Array, roughness: Array) -> tuple[Array, Array]:
 
 
 def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
-    """`conty_kulla_brdf` for valid arrays, (C, ...)."""
     xp = array_namespace(wo, wi, roughness)
     # In float32, LEAST_DIVISOR is 0, so the smallest normal number is the limit.
     least = max(LEAST_DIVISOR, arrays.least_normal(wo))
@@ -134,7 +133,6 @@ def _conty_kulla_formula(wo: Array, wi: Array, tint: Array, roughness: Array) ->
 
 
 def _zeltner_formula(wo: Array, wi: Array, tint: Array, roughness: Array) -> Array:
-    """`zeltner_brdf` for valid arrays, (C, ...)."""
     albedo = _zeltner_albedo(cosines(wo, wi)[0], roughness)
     return tint * (albedo * zeltner_lobe(wo, wi, roughness) / np.pi)
 

@@ -262,7 +262,7 @@ CATEGORIES: dict[str, tuple[Curve, dict[str, Color], dict[str, float]]] = {
 def _material(
     category: str, inputs: Mapping[str, ArrayLike]
 ) -> tuple[Curve, dict[str, Numbers], dict[str, Numbers]]:
-    """Fresnel curve of a node, validated inputs with channels, and without channels."""
+    """Fresnel curve of a node, inputs with channels and inputs without channels, validated."""
     curve, colors, numbers = CATEGORIES[category]
     vectors = arguments.checked_vectors({name: inputs[name] for name in colors})
     return curve, vectors, arguments.checked_all({name: inputs[name] for name in numbers})

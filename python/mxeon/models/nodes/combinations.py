@@ -89,7 +89,6 @@ def _combined(
     inputs: tuple[str, ...] = (),
     variants: tuple[Variant[Scattering], ...] = (),
 ) -> PbrNode:
-    """Row of a node that combines `top` and `base`."""
     value, albedo, taken = _values(combine)
     other = _variant("Conty-Kulla sheens in the lobes' place", combine, CONTY_KULLA)
     if COLORS[0] not in inputs:

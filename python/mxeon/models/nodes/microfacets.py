@@ -29,7 +29,7 @@ from mxeon.models.thin_film import FILM, Form, film_albedo_dir
 OPEN = [
     f"compensation_{each}" for each in ["half", "f0", "view", "fitted", "average", "average_fitted"]
 ]
-# Permitted deviations that have no effect if both alphas are equal.
+# Permitted deviations that only lobes with two different alphas reveal.
 ANISOTROPIC = ["smith_mean", "smith_mean_fitted", "smith_mean_average"]
 REFLECTION, NONE = {"scatter_mode": "R"}, dict[str, str]()
 

@@ -97,7 +97,7 @@ class Variant(Generic[Function]):
     value: Function | None = None  # None for the node's own function
     albedo: Callable[[Array, Inputs], Array] | None = None
     permitted: bool = False  # whether the specification permits the variant
-    anisotropic: bool = False  # whether `value` has no effect if both alphas are equal
+    anisotropic: bool = False  # whether only lobes with two different alphas reveal the variant
     above: bool = False  # whether `albedo` only determines how much the node darkens a lower layer
 
 
