@@ -200,11 +200,11 @@ def test_a_claim_that_does_not_hold_fails(tmp_path):
 def test_a_renderer_with_one_model_for_all_is_told_by_one_line(tmp_path, capsys):
     write_pictures(tmp_path, true="lambert", false="lambert", noise=0.02)
     assert main(["kit", "check", str(tmp_path)]) == 1
-    assert "shows one model: Lambert\n" in capsys.readouterr().out
+    assert "show the same model: Lambert\n" in capsys.readouterr().out
     write_pictures(tmp_path, true="fon", false="lambert")
-    assert not any("one model" in note for note in check_kit(tmp_path).notes)
+    assert not any("same model" in note for note in check_kit(tmp_path).notes)
     render(tmp_path, "false_front").unlink()
-    assert not any("one model" in note for note in check_kit(tmp_path).notes)
+    assert not any("same model" in note for note in check_kit(tmp_path).notes)
 
 
 def srgb(image):

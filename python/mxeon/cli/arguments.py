@@ -258,7 +258,7 @@ def add_methods(command: argparse.ArgumentParser) -> None:
     words = "iterations in MaterialX's own thin-film code"
     group.add_argument(OPTIONS["airy"], type=int, default=0, metavar="N", help=words, dest="airy")
     for name, words in (
-        ("premultiplied", "whether mix multiplies its lobes' weights by its own weight weight"),
+        ("premultiplied", "whether mix multiplies its lobes' weights by its own weight"),
         ("distributed", "whether to distribute layer over mix"),
         ("searched", "whether to search the library's genglsl/environment first"),
     ):

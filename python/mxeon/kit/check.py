@@ -117,7 +117,7 @@ def check_kit(
     # If a model is wrong, all pictures may show the same wrong model.
     wrong = any(each.check == "model" and each.verdict == FAILED for each in results)
     if wrong and (title := one_model(posed, needed, images, depth)):
-        notes.insert(0, f"every picture of a rough material shows one model: {title}")
+        notes.insert(0, f"all pictures of rough materials show the same model: {title}")
     return Run(
         version=mxeon.__version__,
         software={"Python": platform.python_version()} | {name: version(name) for name in SOFTWARE},

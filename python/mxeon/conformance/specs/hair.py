@@ -113,7 +113,7 @@ REGIONS = {
                          variances=(1.0, 100.0), scales=(1.0, 10.0), form=CLAMPED),
     "straight_views": Region("R and TT match the equations for a view along the normal.",
                              azimuths=(0.0, 0.05), scales=(0.05, 0.2)),
-    "low_index": Region("R and TT match the equations for an index below 1, including total reflection.",
+    "low_index": Region("R and TT match the equations for an IOR below 1, including total reflection.",
                         ior=(0.6, 0.95)),
 }
 # fmt: on

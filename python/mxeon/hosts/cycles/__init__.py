@@ -166,4 +166,4 @@ class CyclesHost(PairHost):
         try:
             return read_image(folder / process.PICTURE)
         except ImageError as error:
-            raise NotRun(f"cycles: Blender wrote no picture that can be read; {error}") from None
+            raise NotRun(f"cycles: Blender wrote no readable picture; {error}") from None
