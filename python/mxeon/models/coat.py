@@ -391,7 +391,7 @@ def refracted_cosine(mu: Array, ior: float | Array) -> Array:
 
 
 def mean_parts(mu: Array, b: Array, ior: float | Array, r: Array) -> tuple[Array, Array, Array]:
-    """mu', 1 + r b(mu) and H(mu'), from which k is computed.
+    """Returns mu', 1 + r b(mu) and H(mu'), from which k is computed.
 
     - `b`: The field `b` of `Curves`, which is b(mu) mu' / S'.
     """
@@ -456,7 +456,7 @@ def nonzero(x: float | Array) -> Array:
 
 
 def cosine_at(alpha: Array, x: Array) -> tuple[Array, Array]:
-    """mu = alpha sinh(x^3 asinh(1 / alpha)), the inverse of `scaled_cosine`, and dmu/dx."""
+    """Returns mu = alpha sinh(x^3 asinh(1 / alpha)), the inverse of `scaled_cosine`, and dmu/dx."""
     xp = array_namespace(alpha)
     extent = xp.asinh(1.0 / alpha)
     mu = arrays.at_most(alpha * xp.sinh(extent * x**3), 1.0)

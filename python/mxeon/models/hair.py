@@ -126,7 +126,7 @@ class Section:
 
 
 def section(wo: Array, ior: Array) -> tuple[Section, Array]:
-    """Angles of section Hair Fiber Geometry, and the effective index of refraction.
+    """Returns the angles of section Hair Fiber Geometry and the effective index of refraction.
 
     The specification lets the renderer choose the offset h = sin(gamma_o). As in MaterialX's
     shaders, h is the offset of the point with normal +z. If wo is along the fiber, h is 0. If `ior`

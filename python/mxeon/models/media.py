@@ -112,7 +112,7 @@ def cone_width(inner: Array, outer: Array) -> Array:
 def _checked(
     wo: ArrayLike, colors: Mapping[str, ArrayLike], **numbers: ArrayLike
 ) -> tuple[Array, list[Array], list[Array]]:
-    """Cosine of wo's polar angle, in [-1, 1], and validated colors and numbers that broadcast."""
+    """Returns the cosine of wo's polar angle, in [-1, 1], and validated colors and numbers."""
     directions = arguments.checked_sphere("wo", wo)
     vectors, values = checked_colors(colors, **numbers)
     parts = dict(zip(colors, vectors, strict=True))

@@ -256,7 +256,7 @@ def eon_draw(mu_o: Array, S_o: Array, u1: Array, u2: Array, rho: Array, roughnes
     v = [stretched(u1, start, end) for start, end in zip(starts, ends, strict=True)]
     # `rest` is 1 - v[3], computed without cancellation.
     rest = xp.minimum(1.0 - u1, 1.0 - starts[3]) / (1.0 - starts[3])
-    # Sample a cosine for each of lower, upper and multiple, and keep the chosen part's cosine.
+    # Sample a cosine for the parts lower, upper and multiple, and keep the chosen part's cosine.
     x = v[0] * mu_o * eon_cube_gap(mu_o, S_o)
     lower = eon_lower_cosine(x, arrays.power(1.0 - x, 1.0 / 3.0))
     upper = eon_upper_cosine(arrays.power(v[1], 0.4), mu_o, eon_upper_limit(mu_o, S_o))

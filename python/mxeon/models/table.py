@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of rough diffuse models, and of versions with a known error, one row per model."""
+"""Tables of rough diffuse models and of models with a known error. Each row is a model."""
 
 from __future__ import annotations
 

@@ -377,7 +377,7 @@ def _film_average(
 
 @cache
 def _rule() -> tuple[Array, Array, Array]:
-    """Cosines of POINTS nodes, interpolation matrix to FINE nodes, weights of the FINE nodes."""
+    """Returns cosines of POINTS nodes, the matrix to FINE nodes, and weights of the FINE nodes."""
     x, w = legendre.leggauss(POINTS)
     fine, weight = legendre.leggauss(FINE)
     degree = np.arange(POINTS)

@@ -173,8 +173,8 @@ CAP_BLOCK = 2**4  # elements per block
 # Largest 1 - ior^2 in the quadrature; if `ior` is below 3e-8, almost no light is transmitted.
 MOST_SQUARED = 1.0 - 1e-15
 
-# Values per quadrature node: wo . wh, the cosine of wi, the length of (alpha_x x, alpha_y y, z) for
-# wi = (x, y, z), and the weight.
+# Values at each quadrature node: wo . wh, the cosine of wi, the length of (alpha_x x, alpha_y y, z)
+# for wi = (x, y, z), and the weight.
 Nodes: TypeAlias = tuple[Array, Array, Array, Array]
 
 

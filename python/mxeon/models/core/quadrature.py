@@ -66,7 +66,7 @@ def _integral(
 
 
 def hemisphere_nodes(mu: Array | float, nodes: int) -> tuple[Array, Array, Array]:
-    """wo at azimuth 0, wi (..., N, 3) in half the hemisphere, and weights whose sum is pi."""
+    """Returns wo at azimuth 0, wi (..., N, 3) in half the hemisphere, and weights with sum pi."""
     mu = cast(Array, mu) if arrays.library(mu) else np.asarray(mu, np.float64)
     xp, (x, weight) = array_namespace(mu), (arrays.like(each, mu) for each in unit_rule(nodes))
     theta_o = arrays.arccosine(mu)[..., np.newaxis]

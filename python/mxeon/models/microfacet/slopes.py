@@ -76,7 +76,7 @@ class Slopes:
         return known and bool(np.all(self.roughness[0] == self.roughness[1]))
 
     def rays(self, omega: Array) -> tuple[Array, Array, tuple[Array, Array]]:
-        """B, the largest r, and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
+        """Returns B, the largest r and the slope (alpha_x cos(phi), alpha_y sin(phi)) at r = 1.
 
         The azimuth of the slope is phi = omega + phi_0, where tan(phi_0) = alpha_y y / (alpha_x x).
         Then

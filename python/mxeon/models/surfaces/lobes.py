@@ -2,8 +2,8 @@
 """The lobes of surface shaders under one light.
 
 Parameters are a mapping from the specification's names to values. Numbers have shape (N, 1) and
-colors (N, 3), or (1, 1) and (1, 3) for all points. Directions (N, 3) are unit vectors in the frame
-of the geometric normal, above the horizon.
+colors (N, 3), or (1, 1) and (1, 3) if all points share the value. Directions (N, 3) are unit
+vectors in the frame of the geometric normal, above the horizon.
 """
 
 from __future__ import annotations
