@@ -2,18 +2,19 @@
 """Functions of every model under transformations of PyTorch and JAX.
 
 The tests cover all functions of all models. At the ends of input ranges, no operation returns NaN,
-and gradients are finite. Inside the ranges, gradients match finite differences of NumPy's values.
+and gradients are finite, also in float32. Inside the ranges, gradients match finite differences of NumPy's values.
 `vmap`, `jit` and `compile` return NumPy's values.
 """
 
 from contextlib import nullcontext
 from functools import partial
+from itertools import product
 
 import numpy as np
 import pytest
 
 import mxeon
-from mxeon.models import model_names
+from mxeon.models import hair, model_names
 from mxeon.models.core.arguments import RANGES
 from tests.support.availability import package
 from tests.support.cases import direction
@@ -25,9 +26,11 @@ VALUE = 1e-11  # absolute and relative tolerance for values
 # INSIDE has ranges of random inputs (default: [0.3, 0.7]). ENDS has ends of ranges (0 and 1).
 INSIDE = {"ior": (1.2, 2.0), "extinction": (1.0, 3.0), "thinfilm_thickness": (200.0, 900.0)}
 INSIDE |= {"thinfilm_ior": (1.2, 1.9), "exponent": (2.0, 6.0), "coat_ior": (1.2, 2.0)}
-INSIDE |= dict.fromkeys(("roughness_R", "roughness_TT", "roughness_TRT"), (0.1, 0.6))
-ENDS = {"ior": (1.0, 2.0), "extinction": (0.0, 3.0), "exponent": (1.0, 5.0)}
+INSIDE |= dict.fromkeys(hair.ROUGHNESSES, (0.1, 0.6))
+ENDS = {"ior": (0.0, 1.0, 0.5, 2.0, 1.0), "extinction": (0.0, 3.0), "exponent": (1.0, 5.0)}
 ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # a thickness of 0 has a different formula
+# Least values that float32 can represent inside the range.
+ENDS |= {"radius": (1e-30, 1.0), **dict.fromkeys(hair.ROUGHNESSES, (1.01e-12, 1.0))}
 FUNCTIONS = [
     (name, function)
     for name in model_names()
@@ -71,10 +74,10 @@ def at_ends(row, function):
     middle, ends = inside(row), {}
     for each in row.parameters:
         low, high, _ = RANGES[each.quantity]
-        low, high = ENDS.get(each.quantity, (max(low, -1.0), min(high, 1.0)))
-        ends[each.name] = [np.full_like(middle[each.name], end) for end in (low, high)]
-    given = vectors(row, function, ends=True)
-    corners = [{name: pair[k] for name, pair in ends.items()} for k in range(2)]
+        found = ENDS.get(each.quantity, (max(low, -1.0), min(high, 1.0)))
+        ends[each.name] = [np.full_like(middle[each.name], end) for end in found]
+    given, count = vectors(row, function, ends=True), max(map(len, ends.values()))
+    corners = [{name: each[k % len(each)] for name, each in ends.items()} for k in range(count)]
     if any(map(one_for_all, row.parameters)):
         return [(given, corner) for corner in corners]
     cases = [*corners, *(middle | {name: c[name]} for c in corners for name in c)]
@@ -137,8 +140,10 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
     value, found = gradients(given, inputs)
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
     assert_slopes(partial(model, *given), inputs, found)
-    # At the ends of the ranges, results are finite. A warning by NumPy would fail the test.
-    for given_there, inputs_there in at_ends(row, function):
+    # At the ends of the ranges, results are finite in both precisions. A warning by NumPy would fail the test.
+    for (given_there, inputs_there), kind in product(at_ends(row, function), (float, np.float32)):
+        given_there = [each.astype(kind) for each in given_there]
+        inputs_there = {key: each.astype(kind) for key, each in inputs_there.items()}
         value_there, slopes = gradients(given_there, inputs_there, no_nan(torch))
         plain = numbers(model(*given_there, **inputs_there))
         assert all(np.isfinite(each).all() for each in (value_there, plain, *slopes.values()))

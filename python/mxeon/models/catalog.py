@@ -16,12 +16,12 @@ import numpy as np
 from mxeon.models import coat, sampling, table
 from mxeon.models.core.arguments import checked_choice, checked_directions, checked_sphere
 from mxeon.models.core.arrays import Array, array_namespace, cosine, library, root
+from mxeon.models.microfacet.fresnel import least_ior
 from mxeon.models.nodes import PBR_NODES
 from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
 from mxeon.models.nodes.node import Inputs, Parameter, PbrNode, parameter
 from mxeon.models.shading_model import ModelSampler, ShadingModel
-from mxeon.models.transmission import LEAST_IOR
 
 
 def _cosine_sample(wo: Array, u: Array, inputs: Inputs) -> tuple[Array, Array]:
@@ -155,7 +155,7 @@ def _transmission_model(row: PbrNode) -> ShadingModel:
         # The interface divides radiance by ior^2. The integral of the BTDF is therefore the
         # transmitted fraction of the energy, times 1 / ior^2.
         ior = passing.ior(inputs)[:, np.newaxis]
-        ior = array_namespace(ior).maximum(ior, LEAST_IOR)
+        ior = array_namespace(ior).maximum(ior, least_ior(ior))
         passed: Array = passing.passed(wo, inputs, True) / ior**2
         return passed if mode == "T" else passed + reflected(wo, inputs)
 

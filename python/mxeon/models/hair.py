@@ -123,6 +123,7 @@ class Section:
     cos_o: Array  # cosine of the viewer's inclination
     gamma_o: Array  # angle between the normal and the viewing direction
     gamma_t: Array  # angle between the normal and the refracted ray
+    cos_gamma: Array  # cosine of gamma_o
 
 
 def section(wo: Array, ior: Array) -> tuple[Section, Array]:
@@ -135,10 +136,12 @@ def section(wo: Array, ior: Array) -> tuple[Section, Array]:
     xp, least = array_namespace(wo, ior), max(LEAST_DIVISOR, arrays.least_normal(wo))
     sin_o, cos_o = wo[0], arrays.hypot(wo[1], wo[2])
     inside = arrays.root(xp.maximum(xp.square(ior) - xp.square(sin_o), 0.0))
-    effective = inside / xp.maximum(guarded(cos_o, cos_o > least, 1.0), LEAST_DIVISOR)
+    across = xp.maximum(guarded(cos_o, cos_o > least, 1.0), LEAST_DIVISOR)
+    # The cosine of gamma_o, rounded to float32, may be negative, because float32's pi / 2 is larger.
+    cos_gamma = xp.where(cos_o > least, wo[2] / across, 1.0)
     gamma_o = arrays.angle(-wo[1], xp.where(cos_o > 0.0, wo[2], 1.0))
     sin_t = -wo[1] / xp.maximum(guarded(inside, inside > least, 1.0), LEAST_DIVISOR)
-    return Section(sin_o, cos_o, gamma_o, arrays.arcsine(sin_t)), effective
+    return Section(sin_o, cos_o, gamma_o, arrays.arcsine(sin_t), cos_gamma), inside / across
 
 
 def attenuations(
@@ -150,11 +153,10 @@ def attenuations(
     """
     xp = array_namespace(view.sin_o, ior, absorption)
     least = max(LEAST_DIVISOR, arrays.least_normal(ior))
-    cos_gamma = xp.cos(view.gamma_o)
     if form.effective:
-        F = fresnel_formulas.dielectric(cos_gamma, xp.minimum(effective, 1e50))
+        F = fresnel_formulas.dielectric(view.cos_gamma, xp.minimum(effective, 1e50))
     else:
-        F = fresnel_formulas.dielectric(view.cos_o * cos_gamma, ior)
+        F = fresnel_formulas.dielectric(view.cos_o * view.cos_gamma, ior)
     bends = ior > least
     index = xp.maximum(guarded(ior, bends, least), LEAST_DIVISOR)
     sin_t = arrays.at_most(xp.abs(view.sin_o) / index, 1.0)

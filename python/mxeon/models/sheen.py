@@ -287,7 +287,7 @@ def _azimuths_closed(
     near, far = rise * root(xp.abs(q - r)), fall * root(q + r)
     ends, ahead = far > 0.0, q > r
     ratio = xp.where(ends, near / xp.where(ends, far, 1.0), np.inf)
-    small, below = ratio < 1e-8, xp.where(ahead, 0.0, arrays.at_most(ratio, 1.0 - 1e-16))
+    small, below = ratio < 1e-8, xp.where(ahead, 0.0, arrays.at_most(ratio, arrays.below_1(ratio)))
     turn = xp.where(ahead, arrays.angle(near, far), xp.atanh(below))
     limit = rise / xp.where(small, fall * (q + r), 1.0)
     pole = xp.where(small, limit, turn / xp.where(small, 1.0, root(xp.abs((q - r) * (q + r)))))

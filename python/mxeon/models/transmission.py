@@ -52,10 +52,6 @@ from mxeon.models.microfacet import DIELECTRIC_CURVE, fresnel, ggx
 from mxeon.models.microfacet.slopes import refracting_nodes
 from mxeon.models.sampling import visible_normal
 
-# Smallest index of refraction that is used as a divisor. An interface with a smaller index reflects
-# all light.
-LEAST_IOR = 1e-50
-
 
 @any_array
 def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Array:
@@ -79,8 +75,9 @@ def refraction_direction(wo: ArrayLike, normal: ArrayLike, ior: ArrayLike) -> Ar
 def refracted(wo: Array, normal: Array, ior: Array) -> Array:
     """`refraction_direction` for valid float64 arrays, with components on the first axis."""
     xp = array_namespace(wo, normal, ior)
-    bends = ior > max(LEAST_IOR, arrays.least_normal(wo))
-    inverse = 1.0 / arrays.guarded(xp.maximum(ior, LEAST_IOR), bends, 1.0)
+    least = fresnel.least_ior(wo)
+    bends = ior > least  # an interface with a smaller index reflects all light
+    inverse = 1.0 / arrays.guarded(xp.maximum(ior, least), bends, 1.0)
     cosine = xp.sum(wo * normal, axis=0)
     squared = 1.0 - inverse * inverse * (1.0 - cosine) * (1.0 + cosine)
     passes = (squared > 0.0) & (cosine > 0.0) & bends
@@ -154,8 +151,9 @@ def evaluate_btdf(
         F = at(cosine, ior=ior, **material)
         above = array_namespace(wi).stack([wi[0], wi[1], -wi[2]])
         G2 = ggx.visibility_anisotropic(wo, above, roughness)
-        bends = ior > max(LEAST_IOR, arrays.least_normal(wo))  # `ior` 0 transmits no light
-        index = arrays.guarded(array_namespace(ior).maximum(ior, LEAST_IOR), bends, 1.0)
+        least = fresnel.least_ior(wo)
+        bends = ior > least  # `ior` 0 transmits no light
+        index = arrays.guarded(array_namespace(ior).maximum(ior, least), bends, 1.0)
         lobe = ggx.ndf(wh, roughness) * G2 / index**2
         f = (1.0 - F) * (4.0 * lobe * cosine * jacobian)
         return f * material["tint"] if "tint" in material else f
@@ -240,7 +238,7 @@ def evaluate_transmittance(
         ior = material["ior"]
         T = total(wo, roughness, material, _visible(wo, roughness, ior), 1)
         if arrays.library(ior) or np.any(ior < 1.0):
-            squared = within((1.0 - ior) * (1.0 + ior), 0.0, MOST_SQUARED)
+            squared = within((1.0 - ior) * (1.0 + ior), 0.0, min(MOST_SQUARED, arrays.below_1(ior)))
             split = refracting_nodes(wo, roughness, squared)
             T = array_namespace(T).where(ior < 1.0, total(wo, roughness, material, split, 2), T)
         return T * material["tint"] if "tint" in material else T
@@ -331,7 +329,9 @@ class Reading:
         If `ior` is below 1, wo is inside the solid, and F uses the cosine outside the solid.
         """
         xp = array_namespace(cosine, ior)
-        squared = 1.0 - (1.0 - cosine) * (1.0 + cosine) / xp.maximum(ior, 1e-50) ** 2
+        squared = (
+            1.0 - (1.0 - cosine) * (1.0 + cosine) / xp.maximum(ior, fresnel.least_ior(ior)) ** 2
+        )
         inside = ior < 1.0
         F = self.curve(xp.where(inside, arrays.root(arrays.at_least_0(squared)), cosine), **inputs)
         return xp.where(inside & (squared <= 0.0), 1.0, F)

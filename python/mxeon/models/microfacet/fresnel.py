@@ -32,7 +32,7 @@ from mxeon.models.core.quadrature import unit_rule
 COS_THETA_MAX = 1.0 / 7.0
 
 # An index of refraction n below LEAST_IOR counts as LEAST_IOR in 1 / n, because F_ss is then 1 up
-# to rounding. 1 / LEAST_IOR^3 is finite.
+# to rounding. 1 / LEAST_IOR^3 is finite in float64.
 LEAST_IOR = 1e-50
 
 # Double-exponential quadrature substitutes c = X / (1 + X), where X = exp(pi sinh(t)). The nodes
@@ -119,10 +119,15 @@ def schlick(mu: Array, color0: Array, color82: Array, color90: Array, exponent: 
     return color0 + (color90 - color0) * arrays.power(m, exponent) - a * mu * m**6
 
 
+def least_ior(x: Array) -> float:
+    """Smallest index of refraction n used as a divisor in the precision of x; 1 / n^3 is finite."""
+    return max(LEAST_IOR, float(np.cbrt(arrays.least_normal(x))))
+
+
 def dielectric_avg(ior: Array) -> Array:
     xp = array_namespace(ior)
     inside = ior < 1.0
-    gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, LEAST_IOR), ior - 1.0)
+    gap = xp.where(inside, (1.0 - ior) / xp.maximum(ior, least_ior(ior)), ior - 1.0)
     F = _external_avg(xp.maximum(gap, 0.0))
     return xp.where(inside, (1.0 - ior) * (1.0 + ior) + ior * ior * F, F)
 

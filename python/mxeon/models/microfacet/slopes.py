@@ -128,7 +128,7 @@ class Slopes:
             alpha * double * r * each - of_wo
             for alpha, each, of_wo in zip(self.roughness, slope, self.stretched, strict=True)
         )
-        length_i = xp.sqrt(along * along + across * across + mu_i * mu_i)
+        length_i = root(along * along + across * across + mu_i * mu_i)
         smith = hypot(self.mu_o, self.steepness) * mu_i + length_i * self.mu_o
         return cosine, _density(r) * 2.0 * mu_i * lean / smith
 
@@ -218,7 +218,7 @@ def refracting_nodes(
         (alpha * vertical * r * each - of_wo) * inverse
         for alpha, each, of_wo in zip(roughness, slope, slopes.stretched, strict=True)
     )
-    length_i = xp.sqrt(along * along + across * across + mu_i * mu_i)
+    length_i = root(along * along + across * across + mu_i * mu_i)
     seen = 2.0 * lean / (mu_o + hypot(mu_o, slopes.steepness))
     return cosine, mu_i, length_i, weight * weight_omega * _density(r) * seen
 
