@@ -12,6 +12,7 @@ from mxeon import check
 from mxeon.conformance import words
 from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Diagnosis, Result
 from mxeon.conformance.results.known_issues import issues, with_pages
+from mxeon.hosts import HOSTS
 from mxeon.report import to_json
 from mxeon.report.diff import compare, read_results
 from mxeon.report.junit import to_junit
@@ -246,6 +247,15 @@ def test_a_failure_has_the_pages_that_explain_it(
     place = check, "", subject, host, library, verdict
     result = Result(*place, error, None, 1e-6, diagnosis=diagnosis)
     assert {*with_pages(result).pages} == pages
+
+
+def test_every_host_that_evaluates_generated_text_has_the_pages_of_gl():
+    page, issue = "genglsl_clamped_dot", issues()["genglsl_clamped_dot"]
+    for host in ("gl", *(row.name for row in HOSTS if row.way == "pairs")):
+        result = Result(
+            "value", "", EON, host, "stock", FAILED, issue.sizes["value", EON], None, 1e-6
+        )
+        assert with_pages(result).pages == (page,), host
 
 
 @pytest.mark.whole

@@ -19,7 +19,16 @@ from numpy.typing import ArrayLike
 from mxeon import errors, hosts
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.release import released
-from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Quantity, Result
+from mxeon.conformance.results import (
+    NOT_RUN,
+    SHADER_FUNCTIONS,
+    SOURCE,
+    Cause,
+    Diagnosis,
+    Kind,
+    Quantity,
+    Result,
+)
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES, diffuse, lobes
 from mxeon.conformance.tolerance import Measurement, count_of
@@ -54,33 +63,39 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
     """Results of all checks of texts for a library, including texts of the nodes `subjects`."""
     subjects = tuple(subjects)
     results = [
-        _judged("closure", f"{each.title}, mdl", library, partial(_closure_faults, each, library))
+        _judged("closure", each.title, "mdl", library, partial(_closure_faults, each, library))
         for each in subjects
     ]
     if all(has_functions(library, language) for language in LANGUAGES):
-        results.append(_judged("languages", "shader twins, osl", library, partial(_twins, library)))
+        results.append(
+            _judged("languages", SHADER_FUNCTIONS, "osl", library, partial(_twins, library))
+        )
     if library != "stock":
-        results.append(_judged("clash", "every two nodes", library, partial(_clashes, library)))
+        results.append(_judged("clash", "every two nodes", "", library, partial(_clashes, library)))
         if release := released(library):
             faults = partial(_arguments, library, release)
-            results.append(_judged("arguments", "every node, mdl", library, faults))
+            results.append(_judged("arguments", "every node", "mdl", library, faults))
     for each, target in product((*subjects, *PLAIN_LOBES), generation.TARGETS):
         # The check "closure" already compares all arguments of MDL's rough diffuse nodes.
         if target in TEXT_ONLY and (target != "mdl" or isinstance(each, lobes.PbrSpec)):
             faults = partial(_dropped_inputs, each, target, library)
-            results.append(_judged("source", f"{each.title}, {target}", library, faults))
+            results.append(_judged("source", each.title, target, library, faults))
     return tuple(results)
 
 
-def _judged(check: str, subject: str, library: str, faults: Callable[[], Faults]) -> Result:
+def _judged(
+    check: str, subject: str, target: str, library: str, faults: Callable[[], Faults]
+) -> Result:
+    """The result of a check of one target's text, or of texts of several targets."""
     claim, quantity, variant = CLAIMS[check]
-    place = Result(check, claim, subject, SOURCE, library, NOT_RUN)
+    named = f"{subject}, {target}" if target else subject
+    place = Result(check, claim, named, SOURCE, library, NOT_RUN)
     try:
         causes, control = faults()
     except errors.NotRun as error:
         return not_measured(place, error)
     except errors.ShaderError as error:
-        return not_measured(place, errors.ShaderError(f"{subject.rpartition(', ')[2]}: {error}"))
+        return not_measured(place, errors.ShaderError(f"{target or subject}: {error}"))
 
     def measure(wrong: bool) -> Measurement:
         return Measurement(control if wrong else len(causes), {})

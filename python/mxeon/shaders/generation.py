@@ -39,6 +39,7 @@ from mxeon.shaders.library import (
 )
 from mxeon.shaders.library_tree import root, with_user_paths
 from mxeon.shaders.methods import UNCHOSEN, UNTABLED, Methods, assert_generated
+from mxeon.shaders.targets import PATH_TRACED
 
 __all__ = [
     "GENERATORS",
@@ -183,7 +184,7 @@ def generate(
     if methods.searched and not environment_folders(library):
         raise NotRun(f"library {library}: has no genglsl/environment to search")
     if profile == "path":
-        assert_known("target of the profile path", target, path_tracing.TARGETS)
+        assert_known("target of the profile path", target, PATH_TRACED)
         if not has_profile(library_name(library), profile):
             raise InputError(
                 f"library {library}: must have genglsl/path for the profile path; use --library eonlib"

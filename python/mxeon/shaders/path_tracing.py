@@ -12,8 +12,6 @@ import MaterialX as mx
 from mxeon.errors import InterfaceError
 from mxeon.shaders.library import source_folder
 
-TARGETS = ("glsl", "essl", "vulkan", "slang")
-
 # Expressions that replace outputs of a vertex stage. The path tracer's structure Point is `p`, and
 # object space is the same as world space.
 PLACES = {

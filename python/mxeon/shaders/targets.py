@@ -12,3 +12,4 @@ CLASSES = {
     "osl": ("GenOsl", "OslShaderGenerator"),
     "mdl": ("GenMdl", "MdlShaderGenerator"),
 }
+PATH_TRACED = ("glsl", "essl", "vulkan", "slang")  # targets of the profile "path"

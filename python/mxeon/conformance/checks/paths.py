@@ -29,6 +29,7 @@ from mxeon.conformance.specs.surface_shaders import ALBEDO, SurfaceShaderSpec
 from mxeon.conformance.tolerance import Compared, Measurement, Term, roundings, single, sum_of
 from mxeon.hosts import base, host_row
 from mxeon.hosts.calls import NORMAL, TANGENT
+from mxeon.shaders.targets import PATH_TRACED
 
 if TYPE_CHECKING:  # the import loads MaterialX
     from mxeon.shaders.generation import Input as Port
@@ -68,7 +69,6 @@ FUNCTIONS = {
     **dict.fromkeys(("opacity", "emission"), PASSED),
     "random": RANDOM,
 }
-TARGETS = ("glsl", "essl", "vulkan", "slang")  # shader languages of mxeon.shaders.path_tracing
 DRAWS = 1 << 15
 ANSWERS = cache.Recent[Array](64)  # cache shared by a check and the check's negative control
 # Views at which different numbers of facets transmit light from inside a solid.
@@ -663,7 +663,7 @@ PATHS = partial(
     check.Check,
     requires=Ability.PAIRS,
     profile="path",
-    hosts=lambda spec, host: host_row(host).way == "pairs" and host_row(host).target in TARGETS,
+    hosts=lambda spec, host: host_row(host).way == "pairs" and host_row(host).target in PATH_TRACED,
 )
 
 

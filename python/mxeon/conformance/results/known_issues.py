@@ -22,7 +22,8 @@ STOCK, EONLIB = "stock", "eonlib"
 RENDERER_NODES = "its own nodes"  # replaces the library in results of a renderer's own nodes
 Row = tuple[str, str]  # key of a check, and title of the subject
 Table = Mapping[str, Sequence[str]]  # checks by subject
-GENERATED_GLSL = ("webgl", "vulkan", "wgsl", "slang")  # hosts that use the same GLSL as "gl"
+# Hosts that evaluate generated text, which MaterialX makes of the same GLSL as for "gl".
+GENERATED_GLSL = tuple(row.name for row in hosts.HOSTS if row.way == "pairs" and row.name != "gl")
 # A page begins with an optional comment that contains a row of TOML, followed by a title.
 PAGE = re.compile(r"(?:<!--\n(?P<row>.*?)\n-->\n)?(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
 

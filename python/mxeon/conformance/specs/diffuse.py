@@ -203,27 +203,27 @@ class SurfaceLobe(DiffuseModelSpec):
 
 
 # fmt: off
-# Title, specified model, names of the inputs for color and roughness, and additional inputs.
-ROWS: tuple[tuple[str, str, tuple[str, ...], tuple[tuple[str, str, str], ...]], ...] = (
-    ("open_pbr_surface", "eon", ("base_color", "base_diffuse_roughness"), ()),
-    ("open_pbr_surface, thin-walled", "eon", ("subsurface_color", "base_diffuse_roughness"),
+# Node, mode, specified model, names of the inputs for color and roughness, and additional inputs.
+ROWS: tuple[tuple[str, str, str, tuple[str, ...], tuple[tuple[str, str, str], ...]], ...] = (
+    ("open_pbr_surface", "", "eon", ("base_color", "base_diffuse_roughness"), ()),
+    ("open_pbr_surface", "thin-walled", "eon", ("subsurface_color", "base_diffuse_roughness"),
      (("geometry_thin_walled", "boolean", "true"), ("subsurface_weight", "float", "1.0"))),
-    ("standard_surface", "qon", ("base_color", "diffuse_roughness"), (("base", "float", "1.0"),)),
-    ("UsdPreviewSurface", "lambert", ("diffuseColor",), ()),
-    ("gltf_pbr", "lambert", ("base_color",), (("metallic", "float", "0.0"),)),
+    ("standard_surface", "", "qon", ("base_color", "diffuse_roughness"), (("base", "float", "1.0"),)),
+    ("UsdPreviewSurface", "", "lambert", ("diffuseColor",), ()),
+    ("gltf_pbr", "", "lambert", ("base_color",), (("metallic", "float", "0.0"),)),
 )
 # fmt: on
 SURFACE_LOBES = tuple(
     SurfaceLobe(
-        title=title,
-        node=(node := title.split(",")[0]),
+        title=f"{node}, {mode}" if mode else node,
+        node=node,
         model=model,
         row=model_row(model, node),
         ports=dict(zip(("color", "roughness"), ports, strict=False)),
         set_inputs=additional,
         # Every library has MaterialX's own thin-walled lobe, so judge only one library.
-        libraries=("stock",) if title != node else (),
+        libraries=("stock",) if mode else (),
         errors={"value": LOBE_VALUE},
     )
-    for title, model, ports, additional in ROWS
+    for node, mode, model, ports, additional in ROWS
 )
