@@ -355,7 +355,7 @@ WRONG = {
         ("genglsl/layer_bsdf.glsl", "max(top.throughput, 0.0)", "top.throughput", "combination", ()),
     ),
     "layer": (
-        ("genglsl/layer_bsdf.glsl", "base.response * passed", "base.response", "combination", ()),
+        ("genglsl/layer_bsdf.glsl", "base.response * passed", "base.response", "combination", ("a base that receives all light",)),
         ("genglsl/layer_bsdf.glsl", "passed * base.throughput", "passed", "combined_throughput", ()),
     ),
     "mix, of a layer under a sum": (

@@ -162,8 +162,14 @@ HIDING = _variant(
     "opaque lobes that hide their base at any weight", partial(_masked, finish=_opaque)
 )
 TOP_UNSCALED = _unscaled(lambda top, base, i: top)
+BARE = Variant(
+    "a base that receives all light",
+    _values(lambda top, base, i: layering.add(top, base))[0],
+)
 COMBINATIONS = (
-    _combined("layer", "a layer", "layer", lambda top, base, i: layering.layer(top, base)),
+    _combined(
+        "layer", "a layer", "layer", lambda top, base, i: layering.layer(top, base), (), (BARE,)
+    ),
     _combined(
         "mix",
         "a mix",
