@@ -115,6 +115,11 @@ def test_a_check_whose_control_passed_comes_after_wrong_values():
     assert "(frame)" in first and "(energy)" in second
 
 
+def test_one_check_is_one_check_if_something_is_not_judged():
+    run = made_run(made(), unjudged=(("a lobe", "no model"),))
+    assert run.sentence == "1 check passed and none failed on gl with eonlib."
+
+
 GLASS = "dielectric_bsdf, scatter_mode R"
 
 

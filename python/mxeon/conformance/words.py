@@ -595,7 +595,7 @@ def sentence(run: Run) -> str:
         if differing:
             text = f"{passed} of {total} passed {on}"
         elif run.unjudged:
-            text = f"{len(judged)} checks passed and none failed {on}"
+            text = f"{counted(len(judged), 'check')} passed and none failed {on}"
         else:
             text = f"{'The check' if len(judged) == 1 else f'All {total}'} passed {on}"
     if elsewhere := sum(map(run.is_elsewhere, judged)):
