@@ -234,6 +234,16 @@ def test_unreadable_documents_are_said_before_any_other_work(monkeypatch, capsys
     assert printed.out.startswith("nosuch.mtlx was not checked: 1 error. The check passed on gl")
 
 
+def test_a_file_that_is_no_image_is_refused_before_any_check(tmp_path, monkeypatch, capsys):
+    keep_checks(monkeypatch, "value")
+    (tmp_path / "wood.png").write_text("no image")
+    (tmp_path / "bad.mtlx").write_text(textured(["wood.png"]))
+    assert main(["check", str(tmp_path / "bad.mtlx"), "--workers", "0"]) == MISUSE
+    printed = capsys.readouterr()
+    assert "wood.png: must be an image that OpenImageIO reads" in printed.err
+    assert "has 1 error; nothing was checked" in printed.out
+
+
 def test_nothing_says_of_a_refused_document_that_it_passed(tmp_path, monkeypatch, capsys):
     keep_checks(monkeypatch, "value", "picture")
     shutil.copy(PLASTER, tmp_path / "good.mtlx")

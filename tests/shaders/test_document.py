@@ -32,10 +32,14 @@ FILES = {
     "future": ('<materialx version="1.99"/>', "MaterialX upgrades to 1.39; got '1.99'"),
     "no version": ('<materialx version="x"/>', "MaterialX upgrades to 1.39; got 'x'"),
     "no include": (including("none.mtlx"), "none.mtlx"),
-    "nothing": ('<materialx version="1.39"/>', "must contain a renderable element"),
+    "nothing": ('<materialx version="1.39"/>', "or an output; there is none"),
+    "no material": (
+        '<materialx version="1.39"><standard_surface name="wood" type="surfaceshader"/></materialx>',
+        "got standard_surface 'wood': connect it to the input surfaceshader of a surfacematerial",
+    ),
     "look alone": (
         '<materialx version="1.39"><surfacematerial name="look" type="material"/></materialx>',
-        "must contain a renderable element",
+        "or an output; got surfacematerial 'look'",
     ),
 }
 
@@ -262,6 +266,11 @@ def test_other_encodings_are_refused_in_one_line(tmp_path, encoding):
     for data in (text.encode(encoding), text.encode()):
         message = refusal(written(tmp_path, data))
         assert re.search("must be (a MaterialX document )?in UTF-8; |XML parse error", message)
+
+
+def test_utf_16_is_named(tmp_path):
+    message = refusal(written(tmp_path, TEXT.format("look").encode("utf-16")))
+    assert message.endswith("this is UTF-16: save it as UTF-8")
 
 
 def test_bytes_that_are_no_text_are_refused_with_their_place(tmp_path):

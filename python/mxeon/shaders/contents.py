@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The nodes that a document's materials use, including nodes in nodegraphs and surface shaders."""
 
+import pathlib
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import MaterialX as mx
 
-from mxeon.errors import DocumentError, MxeonError
+from mxeon.errors import DocumentError, ImageError, MxeonError
+from mxeon.io.images import open_image
 from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.document.reading import read_document
+from mxeon.shaders.document.references import files
 from mxeon.shaders.inner_lobes import Path, Walk
 
 CLOSURES = ("BSDF", "EDF", "VDF", "surfaceshader")
@@ -59,6 +63,12 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
     if document.missing:
         return DocumentError(*document.missing)
     walk = Walk(document.renderables, values=True)
+    try:
+        for name in {name for path in walk.shown for name in _images(walk, path)}:
+            for image in files(pathlib.Path(name)):
+                open_image(image)
+    except ImageError as error:
+        return DocumentError(f"{file}: {error}")
     return tuple(sorted({_shown(walk, path) for path in walk.shown}))
 
 
@@ -73,6 +83,13 @@ def node_of(text: str, category: str) -> ShownNode:
     ]
     modes = [(name, node.getInput(name).getValueString()) for name, kind in ports if kind in MODES]
     return ShownNode(category, node.getType(), tuple(ports), tuple(modes))
+
+
+def _images(walk: Walk, path: Path) -> Iterator[str]:
+    """Files of the images that a node reads."""
+    for port in walk.elements[path].getInputs():
+        if port.getType() == "filename" and (name := walk.value(path, port.getName())):
+            yield name
 
 
 def _kind(source: mx.InterfaceElement | None) -> str:

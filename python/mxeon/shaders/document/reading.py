@@ -109,10 +109,7 @@ def read_document(
     missing = tuple(_missing(shown, policy))
     _raise([*faults, *missing] if faults else [])
     if not renderables:
-        raise DocumentError(
-            f"{label(content)}: must contain a renderable element (a surfacematerial, a surface "
-            "shader or an output of one); there is none"
-        )
+        raise DocumentError(_nothing_drawn(content))
     count = graphs.check_shaders(content, renderables, policy)
     warn_of_elements(content, elements)
     return Document(content, renderables, count, missing)
@@ -345,6 +342,20 @@ def _undefined(document: mx.Document, nodes: Iterable[mx.Node]) -> Iterator[str]
             f'{label(document)}: node "{first.getNamePath()}"{others} must have a definition; got '
             f"{category} of type {kind}{remedy}"
         )
+
+
+def _nothing_drawn(document: mx.Document) -> str:
+    """A message for a document without a material that has a surface shader, and without output."""
+    rule = "must contain a surfacematerial with a surface shader, or an output"
+    kinds = "surfaceshader", "material", "volumeshader", "BSDF"
+    nodes = (each for kind in kinds for each in document.getNodes() if each.getType() == kind)
+    node = next(nodes, None)
+    if not node:
+        return f"{label(document)}: {rule}; there is none"
+    text = f"{label(document)}: {rule}; got {node.getCategory()} {node.getName()!r}"
+    if node.getType() != "surfaceshader":
+        return text
+    return f"{text}: connect it to the input surfaceshader of a surfacematerial"
 
 
 def _missing(nodes: Iterable[mx.Node], policy: Policy) -> Iterator[str]:

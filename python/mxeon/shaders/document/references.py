@@ -65,7 +65,8 @@ def file_fault(element: mx.ValueElement, policy: Policy) -> str:
     """The reason why an input's file or set of textures must not be read; "" if there is none."""
     text, home, prefix = element.getValueString(), folder(element.getDocument()), location(element)
     if ENDS_A_STRING.search(text):
-        return f"{prefix} must name a file without quotes and backslashes; got {text}"
+        remedy = ": write / instead of \\" if "\\" in text else ""
+        return f"{prefix} must name a file without quotes and backslashes; got {text}{remedy}"
     path = home / text  # the text is still relative if no file was found
     try:
         check_inside(path, home, policy, prefix)

@@ -29,12 +29,16 @@ def decode(data: bytes, location: str) -> str:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise DocumentError(
-            f"{location}: must be a MaterialX document in UTF-8; {error.reason} at byte {error.start}"
-        ) from None
+        reason = f"{error.reason} at byte {error.start}"
+        if data.startswith((b"\xff\xfe", b"\xfe\xff")) and data[2:4] != b"\0\0":
+            reason = "this is UTF-16"
+        rule = "must be a MaterialX document in UTF-8"
+        raise DocumentError(f"{location}: {rule}; {reason}: save it as UTF-8") from None
     declared = DECLARED.match(text[:LONGEST_DECLARATION])
     if declared and declared[1].lower() not in ("utf-8", "utf8") and not text.isascii():
-        raise DocumentError(f"{location}: must be in UTF-8; got encoding {declared[1]!r}")
+        raise DocumentError(
+            f"{location}: must be in UTF-8; got encoding {declared[1]!r}: save it as UTF-8"
+        )
     return text
 
 
