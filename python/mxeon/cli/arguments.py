@@ -244,7 +244,7 @@ def add_policy(command: argparse.ArgumentParser, runs_code: bool = False, **defa
 METHODS = "methods of generated shaders"  # heading of the options of `add_methods`
 HELP = {
     "environment": "how reflections of an environment are computed",
-    "transmission": "what is seen through a surface: the refracted environment, or what is behind",
+    "transmission": "what is seen through a surface, the refracted environment or the background",
     "albedo": "how MaterialX's own functions find albedos",
 }
 

@@ -38,7 +38,7 @@ def add_parser(commands: arguments.Commands) -> None:
         "files",
         nargs="*",
         metavar="FILE",
-        help="MaterialX documents, or folders of them; without any, check the library's common "
+        help="MaterialX documents, or folders of documents; without FILE, check the library's common "
         "nodes and the bundled examples",
     )
     command.add_argument(
