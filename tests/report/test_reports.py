@@ -413,6 +413,16 @@ def test_the_schema_and_the_reader_accept_the_same_reports(tmp_path, capsys, mon
     assert accepted[0] and accepted.count(True) > 50 and accepted.count(False) > 500
 
 
+def test_a_baseline_without_later_fields_is_read(tmp_path, capsys):
+    content = json.loads(to_json(made_run()))
+    for result in content["results"]:
+        del result["document"], result["element"]
+    old = tmp_path / "old.json"
+    old.write_text(json.dumps(content))
+    assert main(["report", "diff", str(old), kept(made_run(), tmp_path)]) == 0
+    assert capsys.readouterr().out == "no difference\n"
+
+
 def refusal_of(folder, capsys):
     """Assert that `report diff` refuses a report with one line, and return the message."""
     assert main(["report", "diff", str(folder), str(folder)]) == 2

@@ -30,6 +30,7 @@ from mxeon.report.junit import to_junit
 PAGES = "upstream"  # subfolder of a report for pages on defects
 
 JSON_FORMAT = 5
+ADDED = ("document", "element")  # fields of results that earlier reports of this format lack
 SCHEMA = f"urn:mxeon:results:{JSON_FORMAT}"  # identifier of `mxeon.report.schema.schema()`
 
 NOT_PLAIN = re.compile("[^A-Za-z0-9]+")

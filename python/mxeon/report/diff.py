@@ -33,7 +33,7 @@ from mxeon.errors import InputError, one_line
 from mxeon.hosts.base import Identity
 from mxeon.io.files import regular
 from mxeon.io.records import UNREADABLE, read_strictly, spelled
-from mxeon.report import JSON_FORMAT, SCHEMA
+from mxeon.report import ADDED, JSON_FORMAT, SCHEMA
 
 WORSE, LOST, BETTER, OTHER = KINDS = ("worse", "not run any longer", "better", "other")
 RANKS = (PASSED, DIFFERS, FAILED)
@@ -190,6 +190,9 @@ def read_report(content: dict[str, object]) -> Report:
     """The Report in a JSON object that `mxeon.report.to_json` has written."""
     if (identifier := content.pop("$schema")) != SCHEMA:
         raise InputError(f"$schema must be {SCHEMA}; got {identifier!r}")
+    if isinstance(rows := content.get("results"), list):
+        absent = dict.fromkeys(ADDED, "")
+        content["results"] = [absent | row if isinstance(row, dict) else row for row in rows]
     return read_strictly(make_converter(), content, Report)
 
 

@@ -8,8 +8,9 @@ from typing import Any, Literal, TypeAlias, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from mxeon.conformance.results import Result
 from mxeon.io.records import NOT_FINITE
-from mxeon.report import JSON_FORMAT, SCHEMA
+from mxeon.report import ADDED, JSON_FORMAT, SCHEMA
 from mxeon.report.diff import Report
 
 Schema: TypeAlias = dict[str, Any]
@@ -50,7 +51,7 @@ def _record(kind: type, records: dict[str, Schema]) -> Schema:
     return {
         "type": "object",
         "properties": {name: _value(types[name], records) for name in names},
-        "required": names,
+        "required": [name for name in names if kind is not Result or name not in ADDED],
         "additionalProperties": False,
     }
 
