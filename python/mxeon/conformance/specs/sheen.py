@@ -63,7 +63,9 @@ def power_error(host: Host) -> float:
 ZELTNER = lobes.PbrSpec(
     **lobes.mode_of(node("zeltner")),
     inputs=ZELTNER_INPUTS,
-    errors=lobes.lobe_errors(ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, 1e-8),
+    errors=lobes.lobe_errors(
+        ZELTNER_VALUE, ZELTNER_ALBEDO, ZELTNER_THROUGHPUT, FLAT_FRAME, quadrature=1e-8
+    ),
     along=0.03,
 )
 CONTY_KULLA = lobes.PbrSpec(
@@ -71,7 +73,7 @@ CONTY_KULLA = lobes.PbrSpec(
     inputs=INPUTS,
     errors={
         **lobes.lobe_errors(
-            CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_ALBEDO, FLAT_FRAME, 2e-4
+            CONTY_KULLA_VALUE, CONTY_KULLA_ALBEDO, CONTY_KULLA_ALBEDO, FLAT_FRAME, quadrature=2e-4
         ),
         # If wo and wi are swapped, the half vector and the power of the sine stay the same.
         "reciprocity": sum_of(roundings(32)),
