@@ -14,15 +14,15 @@ SIZES = {
     "dielectric_bsdf": (1.79, 1.79),
     "conductor_bsdf": (1.63, 1.55),
     "generalized_schlick_bsdf": (1.71, 1.69),
-    "open_pbr_surface": (1.41, 1.30),
-    "standard_surface": (1.49, 1.33),
-    "gltf_pbr": (1.40, 1.38),
-    "UsdPreviewSurface": (1.42, 1.41),
-    "chiang_hair_bsdf": (1.17, 0.49),
+    "open_pbr_surface": (1.32, 1.30),
+    "standard_surface": (1.38, 1.33),
+    "gltf_pbr": (1.38, 1.38),
+    "UsdPreviewSurface": (1.41, 1.41),
+    "chiang_hair_bsdf": (0.99, 0.49),
     "sheen_bsdf, conty_kulla": (1.07, 0.93),
     "sheen_bsdf, zeltner": (1.07, 0.93),
-    "subsurface_bsdf": (1.06, 1.03),
-    "translucent_bsdf": (1.24, 1.03),
+    "subsurface_bsdf": (0.87, 1.03),
+    "translucent_bsdf": (1.00, 1.03),
 }
 GROWTH = 1.05
 
