@@ -13,8 +13,8 @@ void subsurface_bsdf(ClosureData closureData, float weight, vec3 color, vec3 rad
     bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));
 
     // Diffusion depends on distances between points, so the geometry's normal is used here. If
-    // nothing changes between pixels, the surface counts as flat. Derivatives would be undefined in
-    // branches.
+    // nothing changes between pixels, the surface counts as flat. In a branch, fwidth would be
+    // undefined.
     float curvature = length(fwidth(closureData.N)) / max(length(fwidth(closureData.P)), 1e-30);
 
     if (weight <= 0.0)

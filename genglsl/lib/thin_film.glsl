@@ -20,8 +20,8 @@
 #define THIN_FILM_LEAST 1e-12  // avoids 0 / 0
 
 // The sum ends when the square of the next term is at most VALUE times the squared mean reflectance
-// or WIDTH times the squared width of cosines. A bound of the square falls by RATIO per term, so a
-// mean of 1e-3 needs at most ln(VALUE 1e-6) / ln(RATIO) = 86.1 < COUNT terms. Source:
+// or WIDTH times the squared cosine width. Squared terms fall at least by RATIO, so a mean of
+// 1e-3 needs at most ln(VALUE 1e-6) / ln(RATIO) = 86.1 < COUNT terms. Source:
 // tools/fits/thin_film.py. Largest relative error of a film that reflects 1e-3 or more: 8e-4.
 #define THIN_FILM_ORDER_VALUE 8e-14
 #define THIN_FILM_ORDER_WIDTH 1e-3
@@ -126,8 +126,8 @@ vec3 thin_film_orders(vec3 C0_s, ThinFilmComplex z_s, vec3 C0_p, ThinFilmComplex
     vec4 S_re = THIN_FILM_HEIGHTS * cosine;  // S_m / 2 times the heights
     vec4 S_im = THIN_FILM_HEIGHTS * sine;
 
-    // Bounds of the squared first term and of the squared ratio of terms. Polarization s has the
-    // larger |z|, and p has the larger |C_0|.
+    // Bounds of the squares of the first term and of the ratio of successive terms. Polarization s
+    // has the larger |z|, and p has the larger |C_0|.
     vec3 R = z_s.re * z_s.re + z_s.im * z_s.im;
     vec3 first = C0_p * C0_p * R;
     float order2 = max(first.x, max(first.y, first.z)) * fade2.x;

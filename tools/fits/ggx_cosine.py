@@ -240,7 +240,7 @@ if __name__ == "__main__":
         largest = errors(curves, found, *points(49, 33))
         for n, error in zip(curves.parameters, largest, strict=True):
             print(f"largest absolute error at {n}: {error:.3g}")
-    # The fit of the dip needs the coefficients for Schlick's curves, which `found` now has.
+    # The fit of the dip needs the coefficients for Schlick's curves, so it comes last.
     dip_found = numerator(DIP_FORM, *dip_sample(*points(41, 29), found), DIP_BELOW)
     print("ggx_dip", *printed(dip_found))
     arguments, value, weight = dip_sample(*points(49, 33), found)

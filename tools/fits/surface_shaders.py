@@ -153,7 +153,7 @@ def errors(shader, seed):
 
 
 def largest(shader):
-    """Largest errors of random sets, by name. Sets that the layer equation excludes are skipped."""
+    """Largest errors by name, for random sets of inputs that the layer equation covers."""
     found, seeds = [], count(SEED.get() + 1)
     while len(found) < SETS:
         with suppress(OutsideModel):

@@ -55,9 +55,9 @@ SEED, COUNT, GENERATIONS = 1, 1 << 9, 100  # COUNT films per step of the search
 WORST, STEPS = 8, (0.1, 0.05, 0.02, 0.01)  # number of films to vary, and sizes of the steps
 NUMBERS = 10  # numbers that describe a film, the substrate, alpha and the cosine of wo
 COLORED = 17  # NUMBERS, plus 7 for color82, color90 and the exponent of Schlick's curve
-FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # sizes of steps with COLORED numbers
+FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # step sizes for films that COLORED numbers describe
 MOVED = 0.3  # fraction of the COLORED numbers that change in a step
-LEAST = 1e-3  # lower limit of a film's numbers, except roughness, cosine and extinction
+LEAST = 1e-3  # smallest number of a film, except its roughness, cosine and extinction
 # Films of 1000 nm with large errors, which longer searches found and random starts miss. GLASS is a
 # film on glass at a grazing angle. The film on a metal has total reflection inside the film.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)

@@ -29,7 +29,7 @@ from tools.site import DOCS, brief
 PAGE = DOCS / "gallery.md"
 EXAMPLES = DOCS.parent / "examples"
 PICTURES = DOCS / "images" / "gallery"
-# By material, description and size of stock MaterialX's largest difference from the reference.
+# File with the largest differences of stock MaterialX from the reference, and their descriptions.
 DIFFERENCES = PICTURES / "differences.json"
 SIZE = 512  # width and height of a picture in pixels
 INSET, EDGE = 112, 8  # width of the inset and distance from the edges, in pixels

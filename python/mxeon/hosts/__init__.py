@@ -73,7 +73,7 @@ class Row:
     name: str
     target: str  # shading language; "" for a renderer that only has its own materials
     way: str = ""  # key of `mxeon.conformance.backends.BACKENDS`, or ""
-    needs: str = ""  # requirement for running shaders, if mxeon can only check the text
+    needs: str = ""  # what is missing to run shaders, for hosts that only check source code
     scenes: tuple[Scene, ...] = ()  # scenes in which a document's materials are rendered
     surfaces: bool = False  # whether surface shaders are checked on the host
     rounding: float = 0.0  # relative rounding error of pixels, beyond the error of float32
@@ -104,7 +104,8 @@ HOSTS = (
         scenes=(SIDE, BACK, WHITE_LIGHT),
         surfaces=True,
     ),
-    # The scene WHITE_LIGHT is left out, because Storm sums an environment over its own directions.
+    # The scene WHITE_LIGHT is left out, because Storm chooses the directions in which it samples an
+    # environment.
     Row(
         "storm",
         "glsl",

@@ -74,7 +74,8 @@ def textures(shader: Shader, scene: Scene) -> dict[str, Array]:
 def images(shader: Shader) -> dict[str, Array]:
     """Texels of the images of a shader's document, by sampler.
 
-    An image without a file is its node's `default`, as MaterialX's renderer binds it, or black.
+    An image without a file has the color of its node's `default`, as in MaterialX's renderer. If
+    there is no default, the image is black.
     """
     pixels = {name: read_texture(name) for name in image_files([shader])}
     values = {port.path: port.value for port in shader.inputs}

@@ -151,8 +151,8 @@ def blocked(points: Floats, towards: Floats) -> Mask:
     out = CENTER - points
     along = out @ towards.T
     ball = (along > 0.0) & ((out**2).sum(axis=-1)[:, None] - along**2 < RADIUS**2)
-    # Seen from above, the part of a ray that is lower than the top of the foot is a segment, which
-    # begins at `start` and extends by the vector `reach`.
+    # Below the top of the foot, a ray covers a horizontal segment. The segment begins at `start` and
+    # extends by the vector `reach`.
     start = points[:, ::2]
     reach = towards[:, ::2] * 2.0 * FOOT_HEIGHT / np.maximum(towards[:, 1:2], 1e-6)
     squared, product = (reach**2).sum(axis=-1), start @ reach.T
