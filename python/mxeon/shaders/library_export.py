@@ -36,9 +36,12 @@ CLIENTS = {
 }
 
 
-def recipes(folder: AnyPath) -> str:
-    """Instructions for loading a folder of eonlib, with one line for each renderer."""
-    sources = source_folder(os.fspath(folder))
+def recipes(folder: AnyPath, sources: AnyPath = "") -> str:
+    """Instructions for loading a folder of eonlib, with one line for each renderer.
+
+    `sources` is the folder that contains `genglsl`; by default, it is found next to the documents.
+    """
+    sources = sources or source_folder(os.fspath(folder))
     return "\n".join(f"{name:<21} {text.format(folder, sources)}" for name, text in CLIENTS.items())
 
 
@@ -83,7 +86,7 @@ def _content() -> dict[str, bytes]:
         for name, folder in {"documents": documents_folder(), **folders}.items()
         for path in sorted(folder.rglob("*.*"))
     }
-    text = README.format(version=mxeon.__version__, recipes=recipes("FOLDER"))
+    text = README.format(version=mxeon.__version__, recipes=recipes("FOLDER", "FOLDER"))
     return content | {
         "LICENSE": (data_folder() / "LICENSE").read_bytes(),
         "README.txt": text.encode(),
