@@ -53,7 +53,11 @@ class DocumentError(InputError):
 
 
 class ImageError(InputError):
-    """An image that cannot be used."""
+    """An image that cannot be used. `reason` is the message of the system or of OpenImageIO."""
+
+    def __init__(self, message: str, reason: str = "") -> None:
+        super().__init__(f"{message}; {reason}" if reason else message)
+        self.reason = reason
 
 
 class CheckError(MxeonError, RuntimeError):
@@ -153,6 +157,10 @@ def assert_known(rule: str, name: object, known: Iterable[str], listing: str = "
     """Raise InputError unless a name is known. The message is from `mxeon.names.unknown`."""
     if message := unknown(rule, name, known, listing=listing):
         raise InputError(message)
+
+
+# Separates the reason why a process ended from what the process printed last.
+LAST_OUTPUT = "; last output: "
 
 
 def printable(text: str) -> str:

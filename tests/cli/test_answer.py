@@ -18,7 +18,7 @@ from mxeon.cli import main
 from mxeon.cli.answer import LONGEST, MANY, answer, summary_by_cause
 from mxeon.cli.output import Line, wrapped
 from mxeon.conformance.results import Refused
-from mxeon.errors import MISUSE
+from mxeon.errors import LAST_OUTPUT, MISUSE
 from mxeon.errors import NOT_RUN as DID_NOT_RUN
 from mxeon.report import to_json
 from tests.support.command import CLAY, PLASTER
@@ -378,6 +378,16 @@ RUN = made_run(
     documents=("a/clay.mtlx", "a/glass.mtlx", "b/noise.mtlx"),
     refused=(Refused("light.mtlx", ('light.mtlx: must contain a renderable element; got "a"',)),),
 )
+
+
+def test_documents_whose_workers_crash_alike_share_a_line():
+    reasons = [f"worker process crashed (SIGSEGV){LAST_OUTPUT}line {n}" for n in "12"]
+    crashed = [
+        shown("look", NOT_RUN, f"{n}.mtlx", reason=each)
+        for n, each in zip("12", reasons, strict=True)
+    ]
+    _, line = summary_by_cause(made_run(*crashed, documents=("1.mtlx", "2.mtlx")))
+    assert line == "     2 not run: worker process crashed (SIGSEGV) (1.mtlx and 1 more)"
 
 
 def test_a_document_that_one_library_lacks_counts_once():

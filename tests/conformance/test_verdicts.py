@@ -10,8 +10,18 @@ import pytest
 
 from mxeon import check
 from mxeon.conformance import words
-from mxeon.conformance.results import DIFFERS, FAILED, NOT_RUN, PASSED, PORTRAIT, Diagnosis, Result
+from mxeon.conformance.results import (
+    DIFFERS,
+    FAILED,
+    NOT_RUN,
+    PASSED,
+    PORTRAIT,
+    Diagnosis,
+    Result,
+    node_of,
+)
 from mxeon.conformance.results.known_issues import issues, with_pages
+from mxeon.conformance.specs import ALL
 from mxeon.hosts import HOSTS
 from mxeon.report import to_json
 from mxeon.report.diff import compare, read_results
@@ -247,6 +257,10 @@ def test_a_failure_has_the_pages_that_explain_it(
     place = check, "", subject, host, library, verdict
     result = Result(*place, error, None, 1e-6, diagnosis=diagnosis)
     assert {*with_pages(result).pages} == pages
+
+
+def test_the_title_of_every_spec_begins_with_its_node():
+    assert [each.title for each in ALL if node_of(each.title) != each.node] == []
 
 
 def test_every_host_that_evaluates_generated_text_has_the_pages_of_gl():

@@ -35,12 +35,13 @@ def test_a_file_that_is_no_image_is_refused_with_its_name_in_one_line(tmp_path, 
 
 @pytest.mark.parametrize("make", [os.mkfifo, os.mkdir, None], ids=["pipe", "folder", "none"])
 def test_a_file_that_is_not_regular_is_refused_and_blocks_nobody(tmp_path, make):
-    path = tmp_path / "a.exr"
+    path = tmp_path / "a; b.exr"
     if make:
         make(path)
     reason = "not a regular file" if make else "No such file or directory"
-    with pytest.raises(ImageError, match=f"a.exr: must be an image file; {reason}$"):
+    with pytest.raises(ImageError, match=f"b.exr: must be an image file; {reason}$") as error:
         read_image(path)
+    assert error.value.reason == reason
 
 
 def test_a_picture_that_is_cut_and_still_read_is_told(tmp_path):

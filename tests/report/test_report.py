@@ -17,7 +17,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from mxeon.conformance.results import Refused
+from mxeon.conformance.results import Refused, node_of
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.srgb import srgb_encoded
 from mxeon.models import eon_brdf
@@ -282,7 +282,7 @@ def test_documents_open_with_the_worst_in_the_studio_and_libraries_with_causes(r
         assert [each for each in page.values("id") if each in order] == order
     title = "EON in GLSL is wrong for light from behind"
     assert page.text.count(title) == 3  # once as a cause, and once for each check
-    node = FAILURE.subject.partition(",")[0]
+    node = node_of(FAILURE.subject)
     assert f"Checks {title} {node} 2 best match: QON {node} 1 " in page.text
     alts = page.values("alt")
     assert alts[:3] == [f"{title}: bad, in a studio" for title in (

@@ -27,13 +27,14 @@ from mxeon.conformance.results import (
     Run,
     Verdict,
     grouped,
+    node_of,
 )
 from mxeon.conformance.results.known_issues import issues_of
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.conformance.spec import ValueSpec
 from mxeon.conformance.specs import ALL
 from mxeon.conformance.words import counted, listed
-from mxeon.errors import as_output, one_line
+from mxeon.errors import LAST_OUTPUT, as_output, one_line
 from mxeon.report.formats import link
 from mxeon.shaders.library import eonlib_folder, kind_of
 from mxeon.shaders.library_export import CLIENTS
@@ -218,7 +219,7 @@ def _cause(result: Result, measured: bool) -> str:
     if result.difference and result.diagnosis.first.key in ("", "other_node"):
         return words.appearance(result.difference)
     reason = result.reason or words.diagnosis(result.diagnosis)
-    reason = reason.split("; last output:")[0].removeprefix("reference: ")
+    reason = reason.split(LAST_OUTPUT)[0].removeprefix("reference: ")
     return QUOTED_PATH.sub("...", reason) or words.excess(result)
 
 
@@ -467,7 +468,7 @@ def _failures(run: Run) -> Iterator[Line]:
             return _line(f"cause: {location}{inputs}: {text}")
         return _line(f"failed: {location}{inputs}: {text}", FAILED)
 
-    nodes = {(each.location, each.subject.partition(",")[0]) for each in failures}
+    nodes = {(each.location, node_of(each.subject)) for each in failures}
     explained = []  # pictures that failing nodes explain
     groups = grouped(
         sorted(failures, key=order),
@@ -495,7 +496,7 @@ def _lobes(result: Result) -> set[tuple[str, str]]:
 def _sentence(results: Sequence[Result]) -> str:
     """Text with the nodes and checks that fail for one reason, and with the reason or a link."""
     subjects = _unique(each.subject for each in results)
-    nodes = _unique(each.partition(",")[0] for each in subjects)
+    nodes = _unique(map(node_of, subjects))
     checks = ", ".join(_unique(each.check for each in results))
     reasons = [f"{issue.title}: {link(issue)}" for issue in issues_of(results[0])]
     reason = "; ".join(reasons) or words.explanation(results[0])

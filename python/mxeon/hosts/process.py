@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 from threading import Timer
 from typing import TypeAlias
 
-from mxeon.errors import NotRun
+from mxeon.errors import LAST_OUTPUT, NotRun
 from mxeon.jobs.signals import Temporary
 
 Reply: TypeAlias = dict[str, str]
@@ -103,7 +103,7 @@ class Worker:
             end = f"ended by {Signals(-status).name}" if status < 0 else f"exit status {status}"
         last = " | ".join(self.printed()[-4:]) or "none"
         self._end()
-        raise NotRun(f"{self.name}: {end}; last output: {last}")
+        raise NotRun(f"{self.name}: {end}{LAST_OUTPUT}{last}")
 
     def printed(self) -> list[str]:
         with self.log.open("rb") as log:

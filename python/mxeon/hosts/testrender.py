@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mxeon.errors import MxeonError, NotRun, ShaderError
+from mxeon.errors import LAST_OUTPUT, MxeonError, NotRun, ShaderError
 from mxeon.hosts import testrender_scene as scenes
 from mxeon.hosts.base import Array, Identity, Inputs, RendererWarning
 from mxeon.hosts.osl import points
@@ -149,9 +149,7 @@ def output(
     program = Path(command[0]).name
     if process.returncode:
         last = " | ".join(lines[-LINES:])
-        raise failure(
-            f"testrender: {program}: exit status {process.returncode}; last output: {last}"
-        )
+        raise failure(f"testrender: {program}: exit status {process.returncode}{LAST_OUTPUT}{last}")
     for line in lines:
         if line.startswith("ERROR") or "Assertion" in line:
             raise ShaderError(f"testrender: {program}: {line}")

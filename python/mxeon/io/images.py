@@ -99,7 +99,7 @@ def read_image(path: AnyPath) -> Pixels:
     pixels: Pixels | None = file.read_image(oiio.FLOAT)
     reason = words(file.geterror)
     if pixels is None:
-        raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
+        raise ImageError(f"{path}: must be an image that OpenImageIO reads", reason)
     if reason:
         warnings.warn(ImageWarning(f"{path}: is damaged; {reason}"), stacklevel=2)
     return pixels
@@ -112,11 +112,11 @@ def open_image(path: AnyPath) -> oiio.ImageInput:
     try:
         os.close(regular(path, os.O_RDONLY))  # OpenImageIO would also open pipes
     except OSError as error:
-        raise ImageError(f"{path}: must be an image file; {error.strerror}") from None
+        raise ImageError(f"{path}: must be an image file", error.strerror or "") from None
     file = oiio.ImageInput.open(str(path))
     if file is None:
         reason = words(oiio.geterror)
-        raise ImageError(f"{path}: must be an image that OpenImageIO reads; {reason}")
+        raise ImageError(f"{path}: must be an image that OpenImageIO reads", reason)
     return file
 
 

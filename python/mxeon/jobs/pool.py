@@ -20,7 +20,7 @@ from typing import Any
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
-from mxeon.errors import InputError, MxeonError, NotRun
+from mxeon.errors import LAST_OUTPUT, InputError, MxeonError, NotRun
 from mxeon.jobs import check_timeout, processes, signals
 
 
@@ -246,7 +246,7 @@ def _outcome(future: Future[Any], attempt: Attempt, timeout: float) -> Outcome:
     path = Path(attempt.log)
     lines = path.read_text("utf-8", "replace").split("\n") if path.exists() else []
     last = " | ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:]) or "none"
-    return Outcome(None, f"{' '.join(end.split())}; last output: {last}", attempt.number)
+    return Outcome(None, f"{' '.join(end.split())}{LAST_OUTPUT}{last}", attempt.number)
 
 
 def log_bug(error: BaseException) -> None:

@@ -199,7 +199,7 @@ def _read_image(file: Path, size: int) -> NDArray[np.float64]:
     try:
         image = open_image(file)
     except ImageError as error:
-        raise Unusable(f"must be an EXR file; {str(error).partition('; ')[2]}") from None
+        raise Unusable(f"must be an EXR file; {error.reason}") from None
     spec = image.spec()
     if (spec.width, spec.height) != (size, size):
         raise Unusable(f"must be {size} x {size} pixels; got {spec.width} x {spec.height}")

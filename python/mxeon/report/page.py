@@ -27,6 +27,7 @@ from mxeon.conformance.results import (
     Run,
     Verdict,
     grouped,
+    node_of,
 )
 from mxeon.conformance.results.quantities import Quantity
 from mxeon.io.images import difference, difference_scale
@@ -121,7 +122,7 @@ def causes(results: Iterable[Result]) -> list[tuple[Markup, list[Result]]]:
 
 def nodes_of(results: Iterable[Result]) -> str:
     """Names of the nodes that results judge, without duplicates."""
-    return ", ".join(dict.fromkeys(each.subject.partition(",")[0] for each in results))
+    return ", ".join(dict.fromkeys(node_of(each.subject) for each in results))
 
 
 def materials(run: Run) -> tuple[list[list[Picture]], Verdicts]:

@@ -60,6 +60,15 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, list
     return groups
 
 
+def node_of(subject: str) -> str:
+    """The node of a result's subject, which names the node's mode after a comma.
+
+    >>> node_of("sheen_bsdf, mode zeltner")
+    'sheen_bsdf'
+    """
+    return subject.partition(",")[0]
+
+
 @dataclass(frozen=True)
 class Control:
     """A deliberately wrong variant of a check on the same host, which must fail.

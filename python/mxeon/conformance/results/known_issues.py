@@ -14,7 +14,7 @@ from typing import Any
 import cattrs
 
 from mxeon import errors, hosts
-from mxeon.conformance.results import DIFFERS, FAILED, Cause, Kind, Quantity, Result
+from mxeon.conformance.results import DIFFERS, FAILED, Cause, Kind, Quantity, Result, node_of
 from mxeon.io.records import UNREADABLE, strict_converter
 from mxeon.shaders.library import data_folder
 
@@ -172,7 +172,7 @@ def blamed(result: Result) -> list[set[str]]:
 
 
 def _is_lobe(subject: str) -> bool:
-    return subject.partition(",")[0].endswith("_bsdf")
+    return node_of(subject).endswith("_bsdf")
 
 
 def with_pages(result: Result, materialx: str = "") -> Result:
