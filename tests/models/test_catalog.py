@@ -29,7 +29,12 @@ every_model = pytest.mark.parametrize("name", MODELS)
 SAMPLED = [name for name in MODELS if "sample" in MODELS[name].functions]
 # Inputs of the tested samplers, by name and number of channels. All other inputs have defaults.
 ROUGH = {
-    **{("roughness", 0): 0.5, ("roughness", 2): (0.3, 0.6), ("alpha", 0): 0.3},
+    **{
+        ("roughness", 0): 0.5,
+        ("roughness", 2): (0.3, 0.6),
+        ("alpha", 0): 0.3,
+        ("cuticle_angle", 0): 0.6,
+    },
     **{(name, 2): (0.4, 0.6) for name in hair.ROUGHNESSES},
 }
 OTHER_ALBEDO = ("burley_lambert",)  # wrong models whose albedo is not the integral of their values
@@ -140,18 +145,29 @@ def test_a_node_gives_the_model_of_its_default_mode(category):
 
 @every_model
 def test_a_material_each_gives_the_values_of_single_calls(name):
-    row = mxeon.model(name)
-    light = LIGHT[row.lights]
-    rng = np.random.default_rng(0)
-    inputs = {}
+    row, rng, inputs = mxeon.model(name), np.random.default_rng(0), {}
+    given = {"albedo_dir": (0.4,), "albedo_avg": (), "sample": (WO, [0.3, 0.6])}
     for each in row.parameters:
-        inputs[each.name] = 0.9 * np.asarray(each.default) + 0.1 * rng.random(
-            (2, *np.shape(each.default))
-        )
-    values = row.bsdf(WO, light, **inputs)
-    for n in range(2):
-        own = {key: value[n] for key, value in inputs.items()}
-        assert np.allclose(values[n], row.bsdf(WO, light, **own), rtol=tolerances.MICROFACET)
+        shift = 0.1 * rng.random((2, *np.shape(each.default)))
+        inputs[each.name] = 0.9 * np.asarray(each.default) + shift[[0, 1, 1]]  # two are equal
+    for function in row.functions:
+        call, at = getattr(row, function), given.get(function, (WO, LIGHT[row.lights]))
+        for chosen in (inputs, *({key: inputs[key]} for key in inputs)):
+            values = call(*at, **chosen)
+            for n in range(3):
+                own = call(*at, **{key: value[n] for key, value in chosen.items()})
+                pairs = zip(values, own, strict=True) if function == "sample" else [(values, own)]
+                for many, one in pairs:
+                    assert np.allclose(many[n], one, rtol=tolerances.MICROFACET)
+
+
+@every_model
+def test_colors_that_are_numbers_have_no_channels(name):
+    row = mxeon.model(name)
+    numbers = {e.name: np.mean(e.default) for e in row.parameters if e.channels == 3}
+    last = (3,) if name.endswith("film") else ()
+    assert row.bsdf(WO, LIGHT[row.lights], **numbers).shape == last
+    assert row.albedo_dir([0.3, 0.5], **numbers).shape == (2, *last)
 
 
 def test_inputs_go_to_the_functions_of_the_models():

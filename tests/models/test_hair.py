@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hair: normalization, white furnace, and agreement with 50-digit arithmetic and with Mitsuba."""
 
+import itertools
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -12,6 +14,8 @@ from mxeon.models.hair import (
     chiang_hair_attenuation,
     chiang_hair_bcsdf,
     longitudinal,
+    section,
+    tilted_share,
 )
 from mxeon.models.nodes.lobes import FORMS, READINGS, TILTED, materialx_longitudinal
 from tests.support.availability import package
@@ -137,3 +141,19 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
         inputs = rough | cuticle | {"absorption_coefficient": absorption}
         expected = np.pi * chiang_hair_bcsdf(wo, wi, **inputs)
         np.testing.assert_allclose(value, expected, rtol=2e-6)
+
+
+@pytest.mark.parametrize("theta", [0.0, 0.7, -1.3])
+def test_a_tilted_lobe_has_the_light_of_its_limits(theta):
+    """M_p is a delta function at variance 0 and 1/2 at infinite variance; half a turn mirrors it."""
+    view, _ = section(np.array([np.sin(theta), 0.0, np.cos(theta)]), np.array(1.55))
+
+    def share(v, tilt):
+        return float(tilted_share(view, np.array(v), np.array(tilt)))
+
+    for tilt in (-2.0, -0.3, 0.1, 1.9):
+        peak = max(np.cos(theta + tilt), 0.0) + max(-np.cos(theta - tilt), 0.0)
+        assert share(1e-12, tilt) == pytest.approx(peak / np.cos(theta), abs=1e-5)
+        assert share(1e9, tilt) == pytest.approx(1.0, abs=1e-8)
+    for v, tilt in itertools.product([1e-6, 0.1, 3.0], [0.0, np.pi, -2.0 * np.pi]):
+        assert share(v, tilt) == pytest.approx(1.0, abs=1e-12)

@@ -18,7 +18,7 @@ from mxeon.models.core.arguments import checked_choice, checked_directions, chec
 from mxeon.models.core.arrays import Array, array_namespace, cosine, library, root
 from mxeon.models.microfacet.fresnel import least_ior
 from mxeon.models.nodes import PBR_NODES
-from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE
+from mxeon.models.nodes.lobes import HAIR_NODE, SUBSURFACE_NODE, hair_integral
 from mxeon.models.nodes.microfacets import FILM_NODES, TRANSMISSION_NODES, TRANSMISSIONS
 from mxeon.models.nodes.node import Inputs, Parameter, PbrNode, parameter
 from mxeon.models.shading_model import ModelSampler, ShadingModel
@@ -133,7 +133,7 @@ def _inputs(row: PbrNode) -> tuple[Parameter, ...]:
 
 
 def _scattering_model(row: PbrNode) -> ShadingModel:
-    lights = "all sides" if row is HAIR_NODE else "back" if row.transmits else "front"
+    lights = "all sides" if row.name == HAIR_NODE.name else "back" if row.transmits else "front"
     sampler = SAMPLERS.get(row.name, COSINE)
     return ShadingModel(row, row.parameters or _inputs(row), sampler, lights)
 
@@ -201,6 +201,8 @@ def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> 
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))
     pairs = np.stack(np.broadcast_arrays(alpha, ior), axis=-1)
+    if not vectors:  # each coat has its own average albedo
+        others = [np.broadcast_to(each, (len(pairs), *each.shape[1:])) for each in others]
     coats, which = np.unique(pairs, axis=0, return_inverse=True)
     rows = [np.flatnonzero(which.reshape(-1) == k) for k in range(len(coats))]
     order = np.argsort(np.concatenate(rows))
@@ -220,7 +222,8 @@ MODELS = {
         *map(_scattering_model, table.OTHERS + table.PARAMETRIZATIONS),
         _coated_model("dielectric_over_eon", "dielectric over EON"),
         _coated_model("varnished", "EON under a varnish"),
-        *map(_scattering_model, (*PBR_NODES, *FILM_NODES, SUBSURFACE_NODE, HAIR_NODE)),
+        *map(_scattering_model, (*PBR_NODES, *FILM_NODES, SUBSURFACE_NODE)),
+        _scattering_model(replace(HAIR_NODE, albedo=hair_integral)),
         *map(_transmission_model, TRANSMISSION_NODES),
     )
 }

@@ -26,6 +26,7 @@ from mxeon.models.core import arguments, arrays
 from mxeon.models.core.arguments import checked, lead_shape
 from mxeon.models.core.arrays import Array, ArrayLike, any_array, array_namespace, guarded
 from mxeon.models.core.evaluation import evaluate_material
+from mxeon.models.core.quadrature import unit_rule
 from mxeon.models.microfacet import fresnel as fresnel_formulas
 
 LOBES = ("R", "TT", "TRT", "TRRT+")
@@ -203,6 +204,31 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
+def tilted_share(view: Section, v: Array, tilt: Array) -> Array:
+    """Integral of M_p N_p over all wi for the light's inclination tilted by `tilt`; 1 if untilted.
+
+    With s the tilted inclination, mirrored into [-pi/2, pi/2] because M depends on |cos(s)|, this is
+    the integral of M times max(cos(s - tilt), 0) + max(-cos(s + tilt), 0), by Gauss-Legendre
+    between the zeros of these cosines and the ends of the peak of M.
+    """
+    xp, right = array_namespace(view.sin_o, v, tilt), 0.5 * np.pi
+    kink = xp.remainder(tilt, np.pi) - right
+    center, width = -arrays.angle(view.sin_o, view.cos_o), 12.0 * xp.sqrt(v)
+    zero = 0.0 * (kink + center + width)
+    breaks = (zero - right, kink, -kink, center - width, center + width, zero + right)
+    inside = [arrays.within(each + zero, -right, right) for each in breaks]
+    ends = xp.sort(xp.stack(inside), axis=0)
+    total = zero
+    for x, weight in zip(*unit_rule(TILT_NODES), strict=True):
+        span = ends[1:] - ends[:-1]
+        s = ends[:-1] + float(x) * span
+        M = longitudinal(xp.sin(s), xp.cos(s), view.sin_o, view.cos_o, v)
+        ahead = arrays.at_least_0(xp.cos(s - tilt)) + arrays.at_least_0(-xp.cos(s + tilt))
+        total = total + float(weight) * xp.sum(span * M * ahead, axis=0)
+    return total
+
+
+TILT_NODES = 48  # Gauss-Legendre nodes in each of five intervals
 HAIR_BLOCK = 4096  # elements per block; few, because each element needs much memory
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")

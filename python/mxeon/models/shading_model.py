@@ -135,8 +135,8 @@ class ShadingModel:
     inputs may also be passed by name. Omitted inputs have MaterialX's default. Shapes broadcast,
     except for the last axes of directions, colors and pairs. A color is a number or has channels on
     the last axis; three channels are red, green and blue. If all colors are numbers, results have
-    no axis of channels. A pair, such as the `roughness` of microfacets, may be one number for
-    tangent and bitangent.
+    no axis of channels, except with a film, where results are RGB. A pair, such as the `roughness`
+    of microfacets, may be one number for tangent and bitangent.
 
     wo must be on or above the horizon. wi may have any z; the value is 0 if the model scatters no
     light from wi. `pdf` is the density of `sample` and integrates to 1 over the whole sphere. If a

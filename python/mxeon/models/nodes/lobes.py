@@ -9,14 +9,14 @@ Lambertian with the color of the node.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from mxeon.models import hair, sheen
-from mxeon.models.core.arrays import Array, array_namespace, at_most, cosine
+from mxeon.models.core.arrays import Array, array_namespace, at_most, cosine, library
 from mxeon.models.diffuse import burley_albedo_dir, burley_brdf, lambert_brdf, translucent_btdf
 from mxeon.models.hair import TEXT, TINTS, HairForm
 from mxeon.models.microfacet import defects, dielectric_albedo_dir
@@ -120,7 +120,7 @@ LOBE_NODES = (
         "translucent_bsdf",
         ("color",),
         lambda wo, wi, inputs: translucent_btdf(wo, wi, inputs["color"]),
-        lambda wo, inputs: array_namespace(wo).broadcast_to(inputs["color"], wo.shape),
+        lambda wo, inputs: inputs["color"] + 0.0 * wo[:, :1],
         transmits=True,
     ),
     PbrNode(
@@ -164,11 +164,26 @@ def _hair(wo: Array, wi: Array, inputs: Inputs, form: HairForm = TEXT) -> Array:
     return hair.chiang_hair_bcsdf(wo, wi, **values, form=form)
 
 
-def _albedo(wo: Array, inputs: Inputs) -> Array:
-    """Integral of the BCSDF over all wi for an untilted cuticle: the sum of t_p A_p / pi."""
+def _albedo(wo: Array, inputs: Inputs, shares: Sequence[Array | float] = (1.0, 1.0, 1.0)) -> Array:
+    """Sum of t_p A_p / pi, the integral of the BCSDF over all wi for an untilted cuticle.
+
+    - `shares`: Integrals of M_p N_p of R, TT and TRT, if the cuticle is tilted.
+    """
     factors = hair.chiang_hair_attenuation(wo, inputs["ior"], inputs["absorption_coefficient"])
-    tints = array_namespace(factors).stack([inputs[n] for n in (*TINTS, TINTS[-1])], axis=-1)
-    return array_namespace(factors).sum(factors * tints, axis=-1) / np.pi
+    lobes = enumerate(zip((*TINTS, TINTS[-1]), (*shares, 1.0), strict=True))
+    terms = [factors[..., p] * inputs[tint] * share for p, (tint, share) in lobes]
+    return sum(terms[1:], terms[0]) / np.pi
+
+
+def hair_integral(wo: Array, inputs: Inputs) -> Array:
+    """Integral of the BCSDF over all wi for any tilt of the cuticle."""
+    alpha = np.pi * (inputs["cuticle_angle"] - 0.5)
+    if not library(wo) and not np.any(alpha):
+        return _albedo(wo, inputs)
+    view, _ = hair.section(array_namespace(wo).permute_dims(wo, (1, 0)), inputs["ior"])
+    variances = [inputs[name][:, 0] for name in hair.ROUGHNESSES]
+    tilted = [hair.tilted_share(view, v, (2.0 - 3.0 * p) * alpha) for p, v in enumerate(variances)]
+    return _albedo(wo, inputs, [share[:, np.newaxis] for share in tilted])
 
 
 def _ggx(wo: Array, inputs: Inputs) -> Array:
@@ -233,5 +248,5 @@ SUBSURFACE_NODE = PbrNode(
     "subsurface_bsdf",
     ("color", "radius"),
     lambda wo, wi, inputs: lambert_brdf(wo, wi, inputs["color"]),
-    lambda wo, inputs: array_namespace(wo).broadcast_to(inputs["color"], wo.shape),
+    lambda wo, inputs: inputs["color"] + 0.0 * wo[:, :1],
 )
