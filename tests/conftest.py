@@ -26,8 +26,8 @@ def pytest_configure():
     """Set up signals and Mesa for the tests, and refuse unknown names in MXEON_REQUIRE.
 
     Signals that nohup or a background job ignores get their default handlers, because commands
-    started by tests would inherit the ignored signals. Mesa's software driver skips optimizations,
-    so shaders compile faster and return the same values.
+    started by tests would inherit the ignored signals. Mesa's software driver skips optimizations
+    that take time and change no value.
     """
     os.environ.setdefault("GALLIVM_PERF", "nopt")
     for number in ENDING:
@@ -44,7 +44,7 @@ def pytest_configure():
 def pytest_collection():
     """Import the models with line tracing on, and collect the tests with tracing off.
 
-    Garbage collection is off meanwhile, and later ignores the objects that exist by then.
+    Garbage collection is off during the import, and afterwards ignores the imported objects.
     """
     for module in walk_packages(models.__path__, f"{models.__name__}."):
         import_module(module.name)
@@ -80,7 +80,7 @@ def one_worker():
 
 @pytest.fixture(scope="session", autouse=True)
 def temporary(tmp_path_factory):
-    """Put temporary files into pytest's folder; pytest deletes what killed processes leave."""
+    """Put temporary files into pytest's folder, where pytest deletes files of killed processes."""
     # The path is short, because a browser's socket paths have a limited length.
     folder = tmp_path_factory.getbasetemp() / "t"
     folder.mkdir()

@@ -99,7 +99,7 @@ REFUSED = {"refused": (Refused("cut.mtlx", ("cut.mtlx: must be XML",)),)}
 STOCK = {"compared": ("stock",)}
 ALLOWED = "1 differs, but the specification allows it."
 DIRECTIONS = caused("defect", "other_directions")
-# Results, other fields of the run, exit status, sentence of the summary, and words of the error.
+# Results and other fields of a run. Expected exit status, sentence of the summary, and error.
 RUNS = (
     ([], {}, 3, "No check ran.", ""),
     ([made(NOT_RUN)], {}, 3, "No check ran.", ""),

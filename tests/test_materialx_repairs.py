@@ -80,7 +80,7 @@ def failing(tmp_path_factory):
     ]
 
 
-# Libraries for checks that the pages list, by check and host.
+# Library that a listed check judges, by check, subject and host.
 LIBRARIES = {
     (*row, ISSUES[page].host): ISSUES[page].library for page in PATCHES for row in ISSUES[page].rows
 }

@@ -65,7 +65,7 @@ def test_the_patches_of_a_project_are_from_pages_and_apply_to_its_release(projec
         except FileNotFoundError as error:
             raise NotRun(f"{project}: {error}") from error
     git(folder, "am", "--quiet", *found.values())
-    # In a patch, each line "index" has the hash of the patched file, which must exist in git.
+    # A patch states the git hash of each file after patching. The repository must have each hash.
     for text in (path.read_bytes().decode() for path in found.values()):
         for name in re.findall(r"^index \w+\.\.(\w{40})", text, re.MULTILINE):
             git(folder, "cat-file", "-e", name)

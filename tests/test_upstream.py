@@ -28,7 +28,7 @@ def test_a_page_with_a_patch_says_what_it_changes():
 
 @pytest.fixture(scope="module")
 def judged(tmp_path_factory):
-    """Function that returns the results for a host's defects, and where they were measured."""
+    """Function that returns the results for a host's defects, and the place of the measurement."""
 
     @cache
     def outcome(host, library):

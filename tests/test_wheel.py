@@ -80,7 +80,7 @@ def test_the_wheel_holds_the_package_with_the_data_of_the_checkout_and_nothing_e
         names = set(archive.namelist())
     parts = {part for name in names for part in name.split("/")}
     assert not parts & {"tests", "__pycache__"}
-    # Other folders with the name `libraries` would hide MaterialX's folder of that name.
+    # A folder `libraries` elsewhere in the wheel would hide MaterialX's folder `libraries`.
     libraries = {name.split("/libraries/")[0] for name in names if "/libraries/" in name}
     assert libraries == {"mxeon/data/eonlib/genglsl/environment"}
     assert {name.split("/")[0] for name in names} == {

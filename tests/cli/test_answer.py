@@ -285,7 +285,7 @@ def test_a_document_that_one_library_lacks_is_refused_in_its_column(tmp_path, mo
     assert printed.out.startswith(f"{file} with stock was not checked: 1 error. ")
     assert "with stock MaterialX" in printed.out and "refused" in printed.out
     assert printed.err.endswith("(with stock)\n")
-    # If stock MaterialX is only compared, eonlib's results decide the verdict on the document.
+    # Stock MaterialX runs only for comparison, so eonlib's results decide the verdict.
     assert main(["check", str(file), "--workers", "0"]) == 0
     printed = capsys.readouterr()
     assert printed.err == "" and "not judged" in printed.out and "(with stock)" in printed.out

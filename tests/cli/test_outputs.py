@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Commands refuse an output that would overwrite an input or a file that no argument names."""
+"""Commands refuse to overwrite their inputs, and files that no argument names."""
 
 import os
 import re
@@ -277,7 +277,7 @@ def test_functions_that_write_refuse_likewise(inputs):
 
 
 def test_a_second_run_replaces_its_own_outputs(tmp_path, monkeypatch):
-    """Outputs may even lie in a library's folder that the command reads."""
+    """A command may write into the folder of a library that the command reads."""
     monkeypatch.chdir(tmp_path)
     os.mkdir("lib")
     (tmp_path / "lib" / "own.mtlx").write_text('<materialx version="1.39"></materialx>')

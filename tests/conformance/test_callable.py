@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`check_brdf` judges a Python function like a host."""
+"""`check_brdf` judges a Python function by the checks that judge hosts."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ def test_a_known_defect_is_named(name):
 
 
 def unfinished(wo, wi, rho, roughness):
-    """EON with two faults: NaN for light at the horizon, and infinity for reds in (0.999, 1)."""
+    """EON with two faults: NaN for light at the horizon, and infinity for a red in (0.999, 1)."""
     value = eon_brdf(wo, wi, rho, roughness) * wi[:, 2:] / wi[:, 2:]
     return value + np.where((rho[:, :1] > 0.999) & (rho[:, :1] < 1.0), np.inf, 0.0)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`check` judges tasks or reports tasks as not run, and refuses invalid arguments."""
+"""`check` judges each task or reports the task as not run, and refuses invalid arguments."""
 
 import re
 
@@ -80,11 +80,11 @@ def test_a_document_is_not_run_on_a_renderer(monkeypatch):
 
 @pytest.mark.whole
 def test_two_libraries_are_asked_the_same(run, stock):
-    """Both libraries get the same checks, unless a library lacks a node, function or repair."""
+    """The same checks judge both libraries, unless a library lacks a node, function or repair."""
     results = [[each for each in of.results if each.host == "gl"] for of in (stock, run)]
     checks = [{(each.check, each.subject) for each in of} for of in results]
     own = {"eon_diffuse_bsdf", SHADER_FUNCTIONS, *INVERSIONS}
-    # `picture` judges other documents, and `release` judges the files of stock MaterialX.
+    # `picture` judges different documents per library. `release` judges only stock MaterialX.
     unlike = ("picture", "release")
     eonlib = {row for row in checks[1] if row[1] not in own and row[0] not in unlike}
     assert eonlib < checks[0]
@@ -131,9 +131,9 @@ def test_other_lobes_are_lit_alike_by_eonlib_s_lookups(judged, environment):
 @pytest.mark.parametrize(
     "check, methods, verdict, reason",
     [
-        # MaterialX's sum over directions applies masking twice; eonlib's lookups avoid this error.
+        # MaterialX's sum applies masking twice. Only eonlib's environment lookups avoid this error.
         ("anisotropic_albedo", Methods("fis", searched=True), NOT_RUN, "library stock: has no genglsl/environment to search"),
-        # Stock MaterialX does not compensate lost energy by the exact average albedo.
+        # The energy compensation of stock MaterialX does not use the exact average albedo.
         ("environment", Methods("prefilter"), FAILED, ""),
     ],
 )  # fmt: skip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The journal of a run loses no finished task, repeats none, and never lists an unfinished task."""
+"""The journal of a run lists every finished task exactly once, and lists no unfinished task."""
 
 import gc
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""White lobes over a white base reflect all light, for all masks and both kinds of generators."""
+"""White lobes that are mixed above a white base reflect all light."""
 
 import numpy as np
 import pytest
@@ -55,7 +55,7 @@ NESTED = {
 
 
 def furnace(gl, monkeypatch, library, folded, opaque, nodes):
-    """Light reflected in a white environment. If `folded`, mix weights scale lobe weights."""
+    """Light reflected in a white environment. `folded` sets MaterialX's premultipliedBsdfAdd."""
     context_of = generation.context_of
 
     def context(*arguments):

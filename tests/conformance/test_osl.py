@@ -21,8 +21,8 @@ EXAMPLES = (
 )
 # These nodes use the input `color82`, which no OSL closure has.
 COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")
-# Error relative to the larger of 1 and pi f cos: 16 float32 roundings in an argument, times 4,
-# because a microfacet distribution amplifies the relative error of alpha.
+# Error relative to the larger of 1 and pi f cos. An argument has 16 float32 roundings. A microfacet
+# distribution amplifies the relative error of alpha by 4.
 GRAPH = 64 * 2.0**-24
 # Mutations of the generated OSL, by node title and check: the original text and its replacement.
 WRONG = {
@@ -87,7 +87,7 @@ RIGHT = (
 
 @pytest.fixture
 def changed(hosts):
-    """Function that returns a judge for OSL with a replaced text. The judge caches no values."""
+    """Function that replaces part of the generated OSL, and returns a judge of the changed OSL."""
     host = hosts("osl")
 
     def change(old, new):

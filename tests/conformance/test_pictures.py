@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of documents whose inputs the reference computes or the host provides; messages."""
+"""Pictures of documents match the NumPy reference. Failures have the right messages."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ def shown(judged, tmp_path):
 
 
 FILM = {"roughness": (0.0, 0.0), "thinfilm_thickness": 550.0, "thinfilm_ior": 1.5}
-# Template of a nodegraph that outputs a color, with gaps for the names of the graph and the node.
+# Template of a nodegraph that outputs a color. The names and the color are filled in later.
 COLOR = """<nodegraph name="{graph}">
   <multiply name="{node}" type="color3">
     <input name="in1" type="color3" value="{color}"/>
@@ -145,7 +145,7 @@ def test_materials_that_vary_are_judged_and_compared_at_some_of_the_pixels(shown
     result, pictures, _ = shown(material(NOISE + metal))
     furnace = pictures[-1]
     assert 700 < furnace.judged.sum() < 900
-    # The difference map fills pixels that were not judged with differences of judged neighbors.
+    # In the difference map, pixels that were not judged get the difference of a judged neighbor.
     assert np.abs(furnace.image - furnace.reference).max() > 10.0 * result.tolerance
     assert np.nanmax(furnace.difference_map()) < 3.0 * result.tolerance
 

@@ -18,7 +18,7 @@ NODES = ("burley_diffuse_bsdf", "conical_edf", "roughness_anisotropy")
 
 
 def verdicts(run):
-    """Verdict by library, subject and check, and whether the check caught a deliberate mistake."""
+    """Verdict of each check, and whether the check caught a deliberate mistake."""
     found = {}
     for each in run.results:
         caught = each.control is None or each.control.caught

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A surface shader's graph follows each sentence of the specification, or a known deviation."""
+"""Graphs of surface shaders compute what the specification states, apart from known deviations."""
 
 from functools import cache
 from pathlib import Path
@@ -83,7 +83,7 @@ def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: st
 
 @pytest.mark.parametrize("title", ["Standard Surface, sheen", "glTF, transmission"])
 def test_a_diagnosis_tells_a_graph_from_its_lobes(judged: Verdicts, title: str):
-    """With stock lobes, graph and lobes are wrong. With eonlib's lobes, only the graph is wrong."""
+    """Stock MaterialX has a wrong graph and wrong lobes. With eonlib, only the graph is wrong."""
     assert has(judged("specification", title, library="stock"), "lobes_of_graph")
     assert not has(judged("specification", title), "lobes_of_graph")
 

@@ -60,7 +60,7 @@ ABSENT = (
 
 
 def film(choices):
-    """Expected diagnoses of a thin film, by check. Names of models must contain `choices`."""
+    """Expected diagnoses of a thin film, by check. Each named model has `choices` in the name."""
     compensated = f"{choices}, with MaterialX's compensation"
     surroundings = "environment", "film_visible", "film_glossy"
     return {
@@ -192,8 +192,8 @@ def test_stock_materialx_fails_where_its_pages_say_and_nowhere_else(stock):
     found = {(e.subject, e.check): e.verdict for e in ran if e.verdict != PASSED}
     rows = [(title, check) for title, checks in STOCK.items() for check in checks]
     assert found == {row: DIFFERS if row in FREE else FAILED for row in rows}
-    # `domain` is not run after an error inside the inputs' ranges. `film_brushed` is not run if
-    # `film_visible` already differs.
+    # The check `domain` is not run after an error inside the inputs' ranges. The check
+    # `film_brushed` is not run if the check `film_visible` already differs.
     skipped = {(e.subject, e.check) for e in stock.results if e.verdict == NOT_RUN}
     assert {title for title, check in skipped if check not in ("domain", "film_brushed")} < {
         *ABSENT
@@ -274,7 +274,7 @@ def test_every_host_that_evaluates_generated_text_has_the_pages_of_gl():
 
 @pytest.mark.whole
 def test_nothing_reads_a_sentence(stock, monkeypatch, tmp_path):
-    """Programs read only fields, so rewording all sentences changes no verdict, page or table."""
+    """Rewording all sentences in the results changes no verdict, page or table."""
 
     def decided(run):
         (tmp_path / "results.json").write_text(to_json(run))

@@ -388,7 +388,7 @@ def test_eonlib_written_differently_passes(judged, tmp_path, name):
 
 @pytest.mark.parametrize("title", ["generalized_schlick_bsdf, scatter_mode R", "conductor_bsdf"])
 def test_directions_of_an_environment_by_other_points_pass(judged, tmp_path, title):
-    """The R2 sequence replaces MaterialX's lattice and covers the square just as evenly."""
+    """The R2 sequence covers the square as evenly as MaterialX's lattice does."""
     file = f"genglsl/environment/libraries/{LIB}mx_environment_fis.glsl"
     library = copy_of_eonlib(tmp_path)
     new = "fract(0.5 + float(i + 1) * vec2(0.7548776662466927, 0.5698402909980532))"

@@ -188,7 +188,7 @@ WRONG = {
         ("mx_burley_diffuse_bsdf.glsl", "* M_PI_INV;", "* M_PI_INV + 0.001;", "black", ()),
         ("genglsl/burley_diffuse_bsdf.glsl", "N = mx_forward_facing_normal(N, wo);", "N = closureData.N;", "frame",
          ("direct", "input_ignored", "normal")),
-        # The graphics drivers under test turn NaN into 0, even without the clamp.
+        # The graphics drivers under test turn NaN into 0, even if the clamp is removed.
         ("genglsl/burley_diffuse_bsdf.glsl", "clamp(dot(wi, eonlib_half_vector(wo, wi, N)), 0.0, 1.0)",
          "dot(wi, normalize(wi + wo))", "finite", ("not finite", "opposite")),
         ("mx_burley_diffuse_bsdf.glsl", "(N, V);", "(vec3(0.0, 0.0, 1.0), V);", "frame",
@@ -388,7 +388,7 @@ STANDARD = "standard_surface, every lobe"
 INSIDE, LOST = ("inside_is_not_outside",), ("light_from_inside",)
 SCHLICK = "generalized_schlick_bsdf, scatter_mode RT"
 INDEX = "path_inside && !path_thin ? 1.0 / max(ior, PATH_LEAST_BEND) : ior"
-# Mutations of the shader text for path tracers. Each row starts with the node's title and continues
+# Mutations of the shaders for path tracers. Each row starts with the node's title and continues
 # like a row of WRONG.
 PATHS = (
     (RT, ASKED, "pdf = path_root.y * path_out.a;", "pdf = 3.0 * path_root.y * path_out.a;", "sample",
@@ -493,8 +493,8 @@ def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
     checks = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}
-    # Checks that other tests cover: tests of `test_wrong_libraries.py`, and the tests above of a
-    # color space and of a dropped input.
+    # Checks that are covered by `test_wrong_libraries.py`, or by the tests of a color space and of
+    # a dropped input above.
     elsewhere = {"client", "color_space", "reach", "release"}
     elsewhere |= {"densities", "loss", "parts", "samples", "twins"}
     assert {*checks, *DRAWN} - failing == elsewhere

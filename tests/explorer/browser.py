@@ -27,7 +27,7 @@ def launched(flags=LOCAL):
 
 @contextmanager
 def started(kind, flags):
-    """Context with a browser of the given playwright browser type, started with the given flags."""
+    """Context manager that starts a playwright browser of the given type with the given flags."""
     browser = kind.launch(executable_path=program(), args=flags, chromium_sandbox=not is_root())
     yield browser
     browser.close()
@@ -35,7 +35,7 @@ def started(kind, flags):
 
 @contextmanager
 def opened(browser, address, allowed=(), drawn=True, **options):
-    """Context with an explorer page in a new browser context, which `watched` observes.
+    """Context manager that opens an explorer page in a new browser context.
 
     If `drawn` is false, WebGL is disabled, because WebGL is slow with a software driver.
     """
@@ -96,6 +96,6 @@ def show(page, **patch):
 
 
 def judged(page, side, badge):
-    """Wait until the verdict on a side, computed from pixels, has the given badge."""
+    """Wait until a side's verdict, which the page computes from pixels, has the given badge."""
     text = "side => document.querySelector(`.side.${side} .verdict strong`).textContent"
     until(page, f"([side, badge]) => ({text})(side) === badge", [side, badge])

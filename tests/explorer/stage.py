@@ -39,7 +39,7 @@ def written(file, *names):
 
 
 def opened_stage(browser, address, **options):
-    """Context with an explorer page as narrow as a phone, so that the rendered picture is small."""
+    """Context manager that opens a page as narrow as a phone, so the rendered picture is small."""
     return opened(browser, address, **({"viewport": VIEWPORT} | options))
 
 
@@ -83,7 +83,7 @@ def frame(stage, name=None, size=None):
 
 
 def picture(stage, name="left"):
-    """Square around the sphere, cut from a frame, with the same pixels as a picture of gl."""
+    """Cut the square around the sphere from a frame. The host gl renders the same square."""
     whole = frame(stage, name)
     diameter = stage.evaluate("mxeon.stage.diameter()")
     top, left = ((length - diameter) // 2 for length in whole.shape[:2])

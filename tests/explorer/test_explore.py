@@ -157,7 +157,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
     own = [each for each in data_of(out.read_text())["sources"] if each["id"][:9] == "document/"]
     titles = "With eonlib", "Stock MaterialX"
     for result, entry, title, source in zip(found, entries, titles, own, strict=True):
-        # Compute the largest difference of each picture from the pixels.
+        # Compare the pixels of each picture with the reference, and keep the largest difference.
         sizes = {}
         for each in run.pictures:
             place = each.library, each.document
@@ -168,7 +168,7 @@ def test_one_difference_is_shown_everywhere(browser, tmp_path, name):
                 sizes[each.scene] = apart.max(), seen
         worst, size = max(sizes, key=lambda scene: sizes[scene][0]), result.difference
         assert (size.scene, abs(size.largest), size.visible) == (worst, *map(approx, sizes[worst]))
-        # Every kind of output states the largest difference.
+        # Every output of the run states the largest difference of all pictures.
         sentence, look = words.difference(size), words.look(result)
         assert (entry["library"], entry["difference"]) == (result.library, vars(size))
         assert f"<b>{title}</b> on gl: {look}" in report

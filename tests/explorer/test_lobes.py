@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page judges lobes by pixels that the browser reads back, and keeps its layout."""
+"""The page judges lobes by the pixels that the browser reads back. The layout stays the same."""
 
 from dataclasses import replace
 

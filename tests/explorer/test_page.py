@@ -19,7 +19,7 @@ PIXELS = "mxeon.stage.read().reduce((sum, value, k) => (31 * sum + value * (1 + 
 
 @contextmanager
 def redrawn(page):
-    """Context that asserts that the rendered radiance changes."""
+    """Context manager that asserts that the rendered radiance changes."""
     before = page.evaluate(PIXELS)
     yield
     until(page, f"before => {PIXELS} !== before", before)
@@ -27,7 +27,7 @@ def redrawn(page):
 
 @contextmanager
 def recolored(page):
-    """Context that asserts that the screen changes while the rendered radiance stays the same."""
+    """Context manager that asserts that the screen changes and the rendered radiance does not."""
     canvas = page.locator("canvas")
     before, radiance = canvas.screenshot(), page.evaluate(PIXELS)
     yield

@@ -66,7 +66,7 @@ def test_pixels_of_every_model_are_those_of_numpy(stage, sources, row):
 
 
 def white(row, mu):
-    """Directional albedo at cosines `mu`, in closed form or interpolated as on the stage."""
+    """Directional albedo at cosines `mu`, from a closed form or from a table like the stage's."""
     arguments = (views.RHO, *parameter_of(row))
     if row.albedo_dir:
         return row.albedo_dir(mu, *arguments)

@@ -9,7 +9,7 @@ from mxeon.io.srgb import srgb_encoded
 from tests.explorer.browser import until
 from tests.explorer.stage import LISTEN, frame, opened_stage, picture, settle, side, view
 
-# Tolerance in 8-bit steps: half a step for dithering, half for rounding, one for averaged frames.
+# Tolerance in 8-bit steps. Dithering and rounding add half a step each. Averaging adds a step.
 STEPS = 2
 # CSS that hides the handles above the canvas and aligns the canvas to whole pixels.
 ALONE = """.picture > :not(canvas) { display: none !important }

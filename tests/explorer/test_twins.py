@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page's JavaScript functions, translated from its GLSL, return the same values as NumPy."""
+"""The page's JavaScript functions, which are translated from GLSL, match the NumPy functions."""
 
 import numpy as np
 import pytest
@@ -12,9 +12,9 @@ from tests.support.hemispheres import uniforms
 from tests.support.tolerances import FIT_ANGLE, FIT_LOSS
 
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
-# Relative error of values, caused by the fits in the GLSL. A BRDF value has two factors with the
-# fitted loss. In full Oren-Nayar, the error of the fitted angle has the factor 4 from two squared
-# angles, plus 3 and 2 from other terms.
+# Relative error of values, because the GLSL uses fits. A BRDF value has two factors with the fitted
+# loss. In full Oren-Nayar, the error of the fitted angle counts 4 times in two squared angles, and
+# 3 + 2 times in other terms.
 VALUE = max(2 * FIT_LOSS, (4 + 3 + 2) * FIT_ANGLE)
 RHO = (0.0, 0.3, 0.8, 1.0)
 PARAMETERS = (0.0, 0.2, 0.7, 1.0)
@@ -69,7 +69,7 @@ def test_albedos_are_numpys(undrawn, row):
         else:
             expected = albedo_dir_quadrature(row.brdf, COSINES, RHO, *arguments, nodes=16)
         assert np.abs(np.array(dirs[k]) - expected).max() < VALUE
-        if row.albedo_avg:  # computed in closed form, without fits
+        if row.albedo_avg:  # the albedo has a closed form without fits
             assert np.abs(np.array(avgs[k]) - row.albedo_avg(RHO, *arguments)).max() < 1e-12
 
 

@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 from mxeon.shaders.library import examples_folder
 
-# A call that generated shaders contain only if the document's own permitted code contains it.
+# Generated shaders may contain this call only if a document's own, permitted code has the call.
 POISON = "poison()"
 # Content of files outside the document's folder, which no output may contain.
 CANARY = "canary-5f1e"

@@ -55,7 +55,7 @@ def test_each_defect_is_as_its_page_says(own, issue):
 
 @pytest.fixture(scope="module")
 def repaired(tmp_path_factory):
-    """Function for each host that judges checks with the repaired renderer."""
+    """Functions, by host, that judge checks with the repaired npm package of the renderer."""
     opened = {}
     pages = [each.page for each in measure.CHECKED if each.host == "babylon"]
     diffs = {

@@ -15,7 +15,7 @@ from tests.support.command import output
 from tools.site.ledger import ROOT, apply, patches_of
 
 PROGRAM = Path(support.__file__).with_name("oren_nayar.cpp")
-# Absolute error of values up to 1: an arc cosine in the albedo, and ten float32 roundings.
+# Absolute error of values up to 1, which contain an arc cosine and ten float32 roundings.
 FLOAT32 = 2e-6
 PAIRS = 500
 KERNEL = ".venv-cycles/lib/*/site-packages/bpy/*/scripts/addons_core/cycles/source/kernel"
@@ -32,7 +32,7 @@ def kernel():
 
 @pytest.fixture(scope="module")
 def values(tmp_path_factory):
-    """Function that returns pi f cos of random pairs by the patched header, and by the model."""
+    """Function that computes pi f cos of random pairs with the patched header and the model."""
     with available("cycles"):
         folder = kernel()
     rng = np.random.default_rng(5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Storm and MaterialX's renderer: models from all sides, defects of stock MaterialX, failures."""
+"""Storm and MaterialX's renderer: models from all sides, known defects, and failures."""
 
 import shutil
 from dataclasses import replace
@@ -53,7 +53,7 @@ def test_textures_are_those_of_the_reference(host, reference):
 
 
 def test_a_textured_material_is_seen_at_the_exact_points(on_storm, tmp_path):
-    """Storm renders a material with a texture in blocks of pixels, here one that emits positions."""
+    """Storm renders a textured material in blocks of pixels. The material here emits positions."""
     nodes = (
         '<position name="point" type="vector3"><input name="space" type="string" value="world"/>'
         '</position><convert name="color" type="color3"><input name="in" type="vector3"'
@@ -134,8 +134,8 @@ def test_stock_is_wrong_from_behind(host, judged):
 
 
 GLASS = surface("open_pbr_surface", transmission_weight=1.0, specular_roughness=0.8)
-# Storm renders transmission as opacity. A lobe in mode T therefore subtracts no light, because the
-# layer in mode R above already subtracts the reflected light. In the modified copy, both lobes
+# Storm renders transmission as opacity. The layer in mode R already subtracts the reflected light,
+# so the lobe in mode T below must not subtract the light again. In the modified copy, both lobes
 # subtract reflected light.
 BELOW = "bool below = scatter_mode == 1;", "bool below = false;"
 
@@ -166,8 +166,8 @@ COAT += '<input name="base" type="BSDF" nodename="base"/></layer>'
 WHITE = dict.fromkeys(("color0", "color82"), (1.0, 1.0, 1.0))
 METAL = lobe("generalized_schlick_bsdf", **WHITE, roughness=(0.8, 0.8))
 CONDUCTOR = lobe("conductor_bsdf", roughness=(0.4, 0.4))
-# Mutations of lines that only compile with `genglsl/environment`, a folder that checks on other
-# hosts do not use.
+# Mutations of lines that other hosts never compile, because only the hosts in this file use the
+# folder `genglsl/environment`.
 PREFILTER = "genglsl/environment/libraries/pbrlib/genglsl/lib/mx_environment_prefilter.glsl"
 DIM = ("Radiance) * $envLight", "Radiance) * 0.8 * $envLight", PREFILTER)
 WHOLE = ("mean * lobe.albedo * ", "mean * ", "genglsl/lib/microfacet_lobe.glsl")
@@ -194,7 +194,7 @@ def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
         found = on_storm.picture(shader, replace(FURNACE, size=16))[facing]
         return np.abs(found - np.clip(found, expected, expected / 0.984)).max()
 
-    # Error of a conductor's average reflectance, computed from both ends of its Fresnel curve.
+    # eonlib approximates a conductor's average reflectance from both ends of the Fresnel curve.
     assert error("eonlib") <= 8e-3
     assert min(error("stock"), error(wrong_copy(tmp_path, *change))) >= 0.02
 

@@ -229,7 +229,7 @@ def test_the_example_of_the_page_runs_and_shows_gloss(mi, tmp_path, monkeypatch)
         if "coated.png" in block or "ball.png" in block:
             seen.append(brightest(names["picture"]))
     assert 0.1 < np.array(names["picture"]).mean() < 1.0
-    # With the lamp, the brightest block is 1.5 times as bright.
+    # With the lamp, the brightest block is 1.5 times as bright as without the lamp.
     assert seen[1] > 1.25 * seen[0]
     for name in ("clay", "ball", "coated"):
         assert (tmp_path / f"{name}.png").stat().st_size > 1000

@@ -60,7 +60,7 @@ def test_a_picture_with_the_default_samples_has_no_noise(tracer):
     smooth, raw = (traced(tracer, CLAY, scene, Paths(n), "ball") for n in (None, 64))
 
     def contrast(image):
-        """Mean noise of 2 x 2 blocks in the ball's upper half. Smooth shading cancels in blocks."""
+        """Mean |a - b - c + d| of 2 x 2 pixels in the ball's upper half, 0 for linear shading."""
         part = image[6:14, 10:22].mean(axis=-1)
         blocks = part[:-1, :-1] - part[1:, :-1] - part[:-1, 1:] + part[1:, 1:]
         return np.abs(blocks).mean()

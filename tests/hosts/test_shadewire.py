@@ -47,8 +47,8 @@ def shadewire(hosts):
 @pytest.mark.parametrize("name", CASES)
 def test_values_and_throughputs_of_pairs_are_those_of_stock_glsl(shadewire, gl, name):
     text, inputs = CASES[name]
-    # In stock's surface shaders, the generator multiplies lobe weights by mix weights, so the
-    # throughputs differ.
+    # Throughputs of surface shaders differ between the hosts, because stock MaterialX's generator
+    # multiplies lobe weights by mix weights.
     for output in ("response", "throughput") if "_bsdf" in text else ("response",):
         values = []
         for host in (shadewire, gl):

@@ -17,8 +17,8 @@ from mxeon.models import eon_brdf
 from tests.support.verdicts import FAILED, PASSED, has
 
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-# Error of pi f cos: 8 times 3 roundings in a point at distance 40, lit from distance 1/2, plus the
-# error of OpenImageIO's arc cosine.
+# Error of pi f cos for a light at distance 1/2: 8 times the 3 roundings in a point at distance 40,
+# plus the error of OpenImageIO's arc cosine.
 FLAT = 2e-4
 REAL = all(os.environ.get(variable) for variable in testrender.VARIABLES.values())
 real = pytest.mark.skipif(not REAL, reason="its variables name no build of OSL")

@@ -93,8 +93,8 @@ def test_the_codes_of_srgb_are_decoded_to_what_was_encoded():
     assert np.array_equal(srgb_encoded(srgb_decoded(codes / 255.0)), codes)
 
 
-# Ten times the error of the midpoint rule for a cosine on 64 x 128 pixels, which is h^2 / 12 for
-# the angle h = pi / 64 of a pixel.
+# Ten times the error h^2 / 12 of the midpoint rule for a cosine on 64 x 128 pixels. A pixel spans
+# the angle h = pi / 64.
 SUM = 10.0 * (np.pi / 64.0) ** 2 / 12.0
 
 

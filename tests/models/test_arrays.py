@@ -49,7 +49,7 @@ WIDTH = 1e-4  # step of the finite differences
 OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)
 RELIABLE = 2e-8  # largest difference between the two step widths, for a reliable derivative
 COMPARED = 0.6  # minimum fraction of partial derivatives that must be compared
-# Two functions have smaller minimum fractions. The curve of a film is clamped at thousands of
+# Two functions have a smaller minimum fraction. The curve of a film is clamped at thousands of
 # nodes, which causes kinks. In `diffusion_blur`, a root amplifies the rounding of differences.
 CUT = {"film_albedo_dir": 0.3, "diffusion_blur": 0.0}
 NOISE = {"diffusion_blur": 2e-8}  # root of a difference with an error of 2^-53
@@ -226,7 +226,7 @@ def sampled(function):
     value = arguments.call(inspect.unwrap(function), arguments.base(inspect.unwrap(function)))
     # Samplers return no colors, so their color inputs have one number per row.
     channels = 0 if isinstance(value, tuple) else np.ndim(value)
-    # Samplers of interfaces are an exception, and need color channels.
+    # Only samplers of interfaces need color channels.
     channels = channels or function.__name__.startswith(INTERFACES)
     for name in COLORS & set(arrays) if channels else ():
         if arrays[name].ndim < 2 and (name.startswith(TINTS) or "conductor" in function.__name__):
@@ -261,8 +261,8 @@ def moved(function, arrays, switches, name):
     count = size * len(OFFSETS)
     values = {k: np.tile(each, (count, *np.ones(each.ndim - 1, int))) for k, each in arrays.items()}
     values[name] = several.reshape(values[name].shape)
-    # vmap traces the values, so no argument is checked: shifted arguments may leave their range,
-    # and directions need not have unit length.
+    # vmap traces the values, so the functions check no argument. Shifted arguments may leave their
+    # ranges, and directions need not have unit length.
     torch = package("torch")
 
     def row(*arguments):

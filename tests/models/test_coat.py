@@ -111,7 +111,7 @@ def test_rows_of_coats_are_refused_in_other_array_libraries():
 # --- a varnish -------------------------------------------------------------------------------
 
 FALSE_ALARM = 1e-4
-# Documented errors of the albedo, and of the light in each twelfth of the hemisphere.
+# Documented errors: WALKED of the albedo, SHAPED of the light in each twelfth of the hemisphere.
 WALKED, SHAPED = 0.012, 0.21
 PATHS = 1 << 14
 

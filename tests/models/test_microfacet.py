@@ -212,7 +212,7 @@ def test_defects_agree_with_the_specification_where_they_should():
 
 ALPHA = np.geomspace(1e-4, 1.0, 9)
 MU = np.unique(np.concatenate([np.geomspace(1e-4, 1.0, 13), 1.0 - np.geomspace(1e-12, 0.1, 4)]))
-CUBICS = 5e-13  # difference of two values with rounding errors
+CUBICS = 5e-13  # difference of two computations of the same value, caused by rounding
 EXACT = {"epsabs": 1e-13, "epsrel": 1e-12, "limit": 200}
 
 
@@ -348,7 +348,7 @@ def test_the_albedo_agrees_with_a_quadrature_around_the_view_at_a_critical_angle
         return D * c * 2.0 * mu_i / (smith[0] * mu_i + smith[1] * mu)
 
     def share(t, low, high):
-        # The reflectance has an infinite slope in c at the critical angle, but a finite slope in t.
+        # The substitution of t for the cosine c avoids the infinite slope at the critical angle.
         c = low + (high - low) * t * t * (3.0 - 2.0 * t)
         return models.fresnel_dielectric(c, ior) * around(c) * 6.0 * t * (1.0 - t) * (high - low)
 

@@ -42,7 +42,7 @@ TRACED = [row for row in FUNCTIONS if row[0] not in ("conductor_film", "schlick_
 
 
 def vectors(row, function, ends=False):
-    """Arguments that precede the inputs. If `ends`, views include the normal and the horizon."""
+    """Arguments that precede the inputs. If `ends` is true, views include normal and horizon."""
     rng, mu = np.random.default_rng(SEED), np.array([1.0, 0.0, 0.6] if ends else [0.7, 0.3, 0.9])
     wo = direction(mu, [0.0, 0.3, 2.0])
     wi = np.roll(wo, 1, axis=0) * (-1.0, 1.0, 1.0)

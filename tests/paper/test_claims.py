@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements refute exactly those claims of the paper that the page on claims calls refuted."""
+"""The page on claims marks exactly the claims as refuted that the measurements refute."""
 
 import re
 

@@ -162,7 +162,7 @@ GATE = {
     "a permitted reading with a larger error": (PERMITTED | errors(), PERMITTED | errors(largest=0.6), WORSE, "largest"),
     "does not compile": ({}, {"error": None}, WORSE, "failed at 0.3 -> failed"),
     "no samples, and larger": ({}, {"error": 0.9}, WORSE, "failed at 0.3 -> failed at 0.9; 3 times larger"),
-    # Improvements of a result.
+    # The second result is better than the first.
     "another permitted reading, nearer": (
         PERMITTED | errors() | {"diagnosis": QON}, PERMITTED | errors(rms=0.06, largest=0.2) | {"diagnosis": FON},
         "", "",
@@ -175,7 +175,7 @@ GATE = {
     ),
     "a page is found": (errors(), errors() | PAGE, BETTER, "a explains it"),
     "smaller": ({"error": 0.9}, {}, BETTER, "3 times smaller"),
-    # Changes within the noise of the samples.
+    # The second result equals the first up to the noise of the samples.
     "the same": (errors(*HALVES), errors(*HALVES), "", ""),
     "another driver": (errors(), errors(rms=0.0505, largest=0.4, wrong=101), "", ""),
     "another seed": (

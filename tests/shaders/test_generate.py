@@ -152,7 +152,7 @@ def test_a_source_keeps_no_state(path):
     assert kept(text + "vec3 last = vec3(0.0);\nfloat value;") == {"vec3 last", "float value"}
 
 
-# Patterns of wrong code, by title, searched in the source because some engines hide errors.
+# Patterns of wrong code, by title. Tests search the source, because some engines hide errors.
 WRONG = {
     "a derivative after a return, which some pixels have taken": r"(?s)\breturn;(?:(?!\n}).)*\b(?:fwidth|dFd[xy])\(",
     "the half vector of opposite directions": r"normalize\(w[io] \+ w[io]\)",
@@ -177,11 +177,11 @@ def test_no_name_in_a_source_is_one_that_materialx_makes_for_a_node():
         f"_{port.getName()}"
         for nodedef in load_library().getNodeDefs()
         for port in (*nodedef.getActiveInputs(), *nodedef.getActiveOutputs())
-        # MaterialX makes no variables for inputs of these types.
+        # MaterialX makes no variables for inputs of the types BSDF, EDF and VDF.
         if port.getType() not in ("BSDF", "EDF", "VDF") or "out" in port.getName()
     }
     texts = [path.read_text(encoding="utf-8") for path in (*SOURCES, *OSL_SOURCES)]
-    # This text is a control with two forbidden names.
+    # The test must find the two forbidden names in this control.
     texts.append("vec3 thin_film_weight(float r)\n{\n}\nstruct hair_scale\n{")
     names = [name for text in texts for name in re.findall(NAMES, text)]
     found = [name for name in names if name.endswith((*ports,))]

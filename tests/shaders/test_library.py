@@ -31,7 +31,7 @@ BOTH = (
     '<input name="in2" type="BSDF" nodename="second"/></add>'
 )
 
-# Function calls of two nodes in the generated shaders, by target.
+# Functions that the generated shaders call for two nodes, by target.
 CALLS = {
     "glsl": ("oren_nayar_diffuse_bsdf(closureData, ", "eon_diffuse_bsdf(closureData, "),
     "osl": ('"energy_compensation", first_energy_compensation)', '"energy_compensation", 1)'),

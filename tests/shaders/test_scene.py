@@ -19,7 +19,7 @@ def test_points_of_the_shader_ball_lie_on_it_with_their_normals():
     assert 0.7 < ball.mean() < 0.9
     # The tolerance is the step of central differences, plus twice the tolerance of a point.
     away = np.abs(points.normal[points.mask][ball] * RADIUS - outward[ball]).max(axis=-1)
-    # At least 98 % of the points agree, and the others lie at edges of grooves.
+    # At least 98 % of the points agree. All other points lie at edges of grooves.
     assert np.percentile(away, 98) <= STEP + 2.0 * CLOSE
 
 

@@ -6,9 +6,9 @@ import pytest
 from tests.support.availability import available
 from tools.benchmarks.registers import compiled, sources
 
-# Measured ratios of shaders with eonlib to shaders with stock MaterialX, for the length of the text
-# and the number of SPIR-V instructions. The test fails if a ratio grows by 5 %, or falls by 10 %,
-# after which the ratios must be measured again.
+# Measured sizes of shaders with eonlib, divided by the sizes with stock MaterialX. A size is the
+# length of the source or the number of SPIR-V instructions. The test fails if a ratio grows by 5 %,
+# or falls by 10 %, after which the ratios must be measured again.
 SIZES = {
     "oren_nayar": (0.95, 1.07),
     "dielectric_bsdf": (1.79, 1.79),

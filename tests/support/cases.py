@@ -28,5 +28,5 @@ def pairs(count, seed):
 
 
 def parameter(row, fraction):
-    """Tuple with a model's parameter at a fraction of the maximum; empty without a parameter."""
+    """Tuple with a model's parameter at a fraction of the maximum; empty if there is none."""
     return (row.largest * fraction,) if row.parameter else ()

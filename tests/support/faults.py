@@ -62,7 +62,7 @@ def meet(folder):
 
 
 def need(item):
-    """Return the environment variable that the item names, or raise NotRun if there is none."""
+    """Return the environment variable `item`. If the variable is not set, raise NotRun."""
     if item not in os.environ:
         raise NotRun(f"{item}: missing")
     return os.environ[item]

@@ -36,7 +36,7 @@ def directions(theta, phi):
 
 def hemisphere(mu, count=64):
     """Quadrature directions and solid angles. Panels end where EON has kinks for a view at `mu`."""
-    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # rounding may exceed a right angle
+    kink = np.minimum(np.arccos(mu), 0.5 * np.pi)  # a rounded angle may exceed a right angle
     theta, dtheta = rule(np.unique([0.0, kink, 0.5 * np.pi]), count)
     phi, dphi = rule(0.5 * np.pi * np.arange(-1, 4), count)
     weights = (dtheta * np.sin(theta))[:, :, np.newaxis, np.newaxis] * dphi

@@ -36,14 +36,14 @@ PIXELS = np.linspace(0.0, 1.0, 12, dtype=np.float32).reshape(2, 2, 3)
 
 
 def made(verdict=PASSED, key="value", subject=EON, library="eonlib", host="gl", **fields):
-    """Invented result of a check, by default a check of the EON node."""
+    """Result with invented values, as if a check had judged a node (by default, the EON node)."""
     error = {PASSED: 1e-7, FAILED: 0.37}.get(verdict)
     numbers = {"error": error, "tolerance": 2e-6} if error else {}
     return Result(key, "claim", subject, host, library, verdict, **numbers | fields)
 
 
 def shown(element, verdict=PASSED, document="a/clay.mtlx", key="picture", **fields):
-    """Invented result of a picture of a document's material."""
+    """Result with invented values, as if a document's material had been rendered and judged."""
     place = {"document": document, "element": element}
     return made(verdict, key, f"{Path(document).name}: {element}", **place | fields)
 

@@ -36,7 +36,7 @@ DRAWN += ("path_albedo", "path_emission", "path_random")
 
 
 def every_node(factory, library):
-    """Results of all nodes and of DOCUMENTS on gl with a library, computed once for all tests.
+    """Results of a library's nodes and of DOCUMENTS on gl, computed once for all tests.
 
     The checks in DRAWN are left out, because slower tests cover these checks.
     """

@@ -103,20 +103,20 @@ PDF = 20.0 * ROUNDING
 DIRECTION = 72.0 * ROUNDING
 
 # Error of directions sampled for a rotated view. Sampling amplifies the rounding of the view's
-# sine. Of 1000 samples, one exceeds the tolerance on average, and more than 10 with probability
-# 1e-8.
+# sine. Of 1000 samples, one exceeds the tolerance on average. The probability that more than 10
+# exceed the tolerance is 1e-8.
 TURNED_DIRECTION = 10.0 * DIRECTION
 TURNED_SHARE = 10 / 1000
 
 # Relative difference between the density returned with a sample and the density computed from the
 # sample's direction. Each computation has 4 (6 + 6) roundings in a fourth power, and 20 other
-# roundings. det M, a difference of terms <= 1.6 that is at least 0.91, adds 6 x 1.8 roundings. Near
-# the boundary of CLTC, the density also has an absolute error of DIRECTION.
+# roundings. The determinant of M, a difference of terms <= 1.6, is at least 0.91 and adds 6 x 1.8
+# roundings. Near the boundary of CLTC, the density also has an absolute error of DIRECTION.
 SAMPLE_PDF = 2 * (4 * (6 + 6) + 6 * 1.8 + 20) * ROUNDING
 
-# Absolute error of a density if its sample has the error TURNED_DIRECTION. At mu_o = 0.3, |s / t|
-# is at most 3.2. Per radian, the density changes by twice |s / t|, plus 1 for the cosine, all
-# divided by pi.
+# Absolute error of the density of a sample that has the error TURNED_DIRECTION. Per radian, the
+# density changes by (2 |s / t| + 1) / pi, where 1 stands for the cosine. The largest |s / t| at
+# mu_o = 0.3 is 3.2.
 TURNED_PDF = (1 + 2 * 3.2) / pi * TURNED_DIRECTION
 
 # Relative error of the height of a clipped cosine, a square root of a product of positive terms.
@@ -124,8 +124,8 @@ TURNED_PDF = (1 + 2 * 3.2) / pi * TURNED_DIRECTION
 # rounded once.
 RIM = (0.5 * (4 + 6) + 1) * ROUNDING
 
-# Absolute error of the side of the lune. The coordinates x and z are at most 1 and have 4
-# roundings, a function call, and the error RIM.
+# Absolute error of d x + z, which is negative where CLTC is clipped. The coordinates x and z are at
+# most 1 and have 4 roundings, a function call, and the error RIM.
 LUNE = (4 + FUNCTION) * ROUNDING + RIM
 
 # Absolute error of the integral of a density with a kink: h^2 / 12 per unit of length. The
@@ -144,8 +144,8 @@ ROUND_TRIP = 1e-14
 # Error of an OpenGL picture times cos(theta_o): 16 roundings in a pixel's point, 32 in the value.
 PICTURE = (16 + 32) * ROUNDING_32
 
-# Maximum number of 200 kits with pure noise that may be judged biased. Each kit has a false-alarm
-# rate of 1e-3, so more than 2 false alarms have a probability of 1.1e-3.
+# Maximum number of kits that may be judged biased, among 200 kits with pure noise. Each kit has a
+# false-alarm rate of 1e-3, so more than 2 false alarms have a probability of 1.1e-3.
 KIT_FALSE_ALARMS = 2
 
 # Error of an albedo that is summed over visible normals. SwiftShader's sine and cosine are off by
@@ -178,8 +178,8 @@ FRESNEL = 4.0 * (40 + FUNCTION) * ROUNDING
 MICROFACET = (2 * 2 / 0.05 + 60) * ROUNDING
 
 # Documented errors. CONDUCTOR is the absolute error of a conductor's reflectance. E_SS is the
-# absolute error of E_ss, or E_SS_SMALL for small roughness. SLOPES is the error of albedos summed
-# over slopes, divided by the larger of 1 and the albedo.
+# absolute error of E_ss, or E_SS_SMALL for small roughness. SLOPES is the error of albedos that are
+# summed over facet slopes, divided by the larger of 1 and the albedo.
 CONDUCTOR = 1e-12
 E_SS = 1e-10
 E_SS_SMALL = 2e-8

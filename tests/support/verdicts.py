@@ -8,7 +8,7 @@ from mxeon.hosts import open_engine
 from mxeon.shaders.document.policy import DEFAULT
 
 PASSED, DIFFERS, FAILED, NOT_RUN = "passed", "differs", "failed", "not run"
-SOURCE = "source"  # name of the host in results of text checks
+SOURCE = "source"  # name of the host in results of checks of source code
 STOCK, RENDERER_NODES = "stock", "its own nodes"  # names of libraries in results
 SHADER_FUNCTIONS = "shader twins"  # subject of checks of shader functions
 
@@ -25,11 +25,11 @@ class Verdicts:
         return result
 
     def all(self, check, subject, host="gl", library="eonlib", **task):
-        """All results of one task. Tasks that check texts or functions have several results."""
+        """All results of one task. Tasks that check source or functions have several results."""
         return self._work(check, subject, host, library, **task).results
 
     def texts(self, check, library):
-        """Results of the text check with the key `check`, by subject."""
+        """Results of the check of source code with the key `check`, by subject."""
         results = self.all(SOURCE, EVERY_NODE, SOURCE, library)
         return {each.subject: each for each in results if each.check == check}
 
