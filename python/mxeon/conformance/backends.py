@@ -70,7 +70,7 @@ class Backend(ABC):
     # Kinds of states, such as "lights", for which the check `states` only uses the first state.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether `few` contains all samples
-    fewer: ClassVar[Counts | None] = None  # replaces the counts of specs that would draw more pairs
+    fewer: ClassVar[Counts | None] = None  # numbers of samples if a spec would draw more pairs
     engine_errors: ClassVar[Errors | None] = None  # replaces the errors of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
@@ -120,7 +120,7 @@ class Backend(ABC):
 
     @property
     def claims(self) -> tuple[str, str]:
-        """Values of `Result.claimed` and `Result.model`, "" except for a renderer's own node."""
+        """For a renderer's own node, titles of the claimed and the judged model; otherwise ""."""
         return "", ""
 
     def judged(self) -> Spec:
@@ -389,7 +389,7 @@ class Closures(Evaluating):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """A subset of each kind of samples, in few batches because each run has a fixed cost."""
+        """A subset of each kind of samples, in few batches that save the fixed cost of each run."""
         few = (batch.first(self.counts.few) for batch in self.batches)
         groups = grouped(few, lambda batch: (*sorted(batch.inputs), batch.frame is None))
         return tuple(map(joined, groups.values()))
@@ -512,7 +512,7 @@ class RenderablePairs(Evaluating):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """Few views, because a fixed number of light paths is divided among all views."""
+        """A few of the views, among which a fixed number of light paths is divided."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
@@ -768,7 +768,7 @@ def lit_pairs(normal: Array, scene: Scene) -> Pairs:
 
 
 class CyclesPictures(Spheres):
-    """Pictures by Cycles of a rough diffuse node, which Cycles renders with its own closure."""
+    """Pictures of a rough diffuse node that Cycles renders with its own closure."""
 
     abilities = Ability.DIFFUSE | Ability.LIGHT
     engine_errors: ClassVar[Errors] = {
@@ -893,7 +893,7 @@ BACKENDS: dict[str, tuple[type[Backend], ...]] = {
 
 
 def ways_of(host: str) -> tuple[type[Backend], ...]:
-    """The backends of a host, or () if only the text of the host's shaders is checked."""
+    """The backends of a host, or () if only the source code of the host's shaders is checked."""
     own_nodes(host)  # imports the backends of a renderer
     return BACKENDS.get(host_row(host).way, ())
 

@@ -73,8 +73,8 @@ class Check:
     control: controls.Control
     explain: Explain | Diagnosis | None = None  # comparisons have a default explanation
     requires: Ability = NO_ABILITY  # abilities that the check requires of a backend
-    # Profile of shader text that the check needs, such as "path" for path tracers. Checks with a
-    # profile only run for nodes that the user names. The rasterizer's text has the profile "".
+    # Profile of generated shaders, such as "path" for path tracers, or "" for rasterizers. Checks
+    # with a profile other than "" only run for nodes that the user names.
     profile: str = ""
     # Whether the verdict is "differs" instead of "failed" if a permitted function explains the
     # values.

@@ -213,7 +213,7 @@ def judge_document(
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
-    """The scenes of a host. A host without environment light has no scenes with environments."""
+    """Scenes that a host can light. Some hosts have no environment light."""
     scenes = host_row(host.name).scenes
     if host.active.environment == "none":
         scenes = tuple(each for each in scenes if each.environment is None)
@@ -307,7 +307,7 @@ def _input_at_fault(
     """The input whose removal brings a renderer's own material nearest to the reference."""
     small = [replace(scene, size=64) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
-    # For each removed input, the largest difference from the reference. No input is removed for "".
+    # For each removed input, the largest difference from the reference. The key "" removes none.
     errors: dict[str, float] = {}
     for name in ("", *names):
         document = mx.createDocument()

@@ -44,7 +44,7 @@ SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes
 SIZE = 24  # width of the pictures that compare lobes
 MATERIALS = 3  # number of random materials in pictures of lobes
-# Compared attributes of ports. Ranges, which only guide editors, are compared for eonlib's nodes.
+# Compared attributes of ports. Ranges only guide editors, so only eonlib's ranges are compared.
 ATTRIBUTES = ("type", "defaultgeomprop", "uniform", "unit", "unittype", "colorspace", "enum")
 RANGE = ("uimin", "uimax")
 COMPONENTS = {"float": 1, "integer": 1, "boolean": 1, "vector2": 2, "color3": 3, "vector3": 3}
@@ -120,7 +120,7 @@ def definition_facts(
 
 
 def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
-    """Attributes of all units and geometric properties of the release, as defined in a document."""
+    """Attributes that a document gives to the units and geometric properties of the release."""
     names = [each.getName() for each in (*release.getUnitDefs(), *release.getGeomPropDefs())]
     definitions = [own for own in map(document.getChild, names) if own]
     return {
@@ -133,7 +133,7 @@ def unit_facts(document: mx.Document, release: mx.Document) -> dict[str, str]:
 
 
 def normalized(text: str) -> str:
-    """The text with shortened numbers and without "false", because flags are false by default."""
+    """The string with shortened numbers and without "false", because flags are false by default."""
     words = text.replace("false", "").replace(",", " ").split()
     with suppress(ValueError):
         words = [f"{float(word):g}" for word in words]
@@ -169,7 +169,7 @@ class Terms:
 
 
 def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple[Place, Place]]:
-    """Pairs of ports at which two graphs differ. Lobes of the same node are compared by inputs."""
+    """Pairs of ports at which two graphs differ. The inputs of equal lobes are compared."""
     if terms.port(own) == terms.port(released):
         return
     nodes = [graph.getNode(port.getNodeName()) for graph, port in (own, released)]
@@ -184,7 +184,7 @@ def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple
 
 
 class Comparison:
-    """Compares a library with the release. A host evaluates nodes whose texts differ."""
+    """Compares a library with the release. A host evaluates nodes whose source code differs."""
 
     def __init__(
         self,
@@ -275,7 +275,7 @@ class Comparison:
         return own, released, *(each.getImplementation(self._target) for each in (own, released))
 
     def _change(self, name: str) -> Hashable:
-        """A key that is equal for nodes with the same change of text, or None to skip a node."""
+        """A key that is equal for nodes with the same change of code, or None to skip a node."""
         own, released, code, released_code = self._pair(name)
         if released_code is None:
             return None
@@ -338,7 +338,7 @@ class Comparison:
         return error
 
     def _text_error(self, own: mx.NodeDef, released: mx.NodeDef) -> float:
-        """The largest difference of two nodes' values. Raise NotRun if values cannot be compared."""
+        """The largest difference between two nodes' values. Raise NotRun if this is impossible."""
         outputs, inputs = released.getActiveOutputs(), released.getActiveInputs()
         kinds, input_kinds = ({port.getType() for port in ports} for ports in (outputs, inputs))
         sides = (own, self._library), (released, "stock")
@@ -523,8 +523,8 @@ def largest_error(values: Array, expected: Array) -> float:
     """The largest error, which is relative for values above 1.
 
     The error is infinite if only one of two values is finite. In the last half of the rows, which
-    have inputs outside [0, 1], only finite values count, because equal graphs may differ for the
-    root of a negative number.
+    have inputs outside [0, 1], only finite values count, because equivalent graphs may return
+    different values for roots of negative numbers.
     """
     with np.errstate(invalid="ignore"):
         error = np.abs(values - expected) / np.maximum(1.0, np.abs(expected))

@@ -26,7 +26,7 @@ GOLDEN_RATIO = 0.618  # multiples of this number modulo 1 are evenly spread
 PAIRS = 1 << 16
 FEW = 1 << 14  # default number of pairs for expensive checks
 GRAZING = 1e-6  # smallest cosine of the random pairs
-RIM = 0.05  # smallest cosine judged in pictures, because pixel positions matter closer to the rim
+RIM = 0.05  # smallest cosine judged in pictures; closer to the rim, values vary inside a pixel
 LOBE_RIM = 0.25  # smallest cosine judged in pictures of a diffuse lobe below other lobes
 
 Array: TypeAlias = NDArray[np.float64]
@@ -95,7 +95,7 @@ class Batch:
         return replace(self, wo=self.wo[rows], wi=self.wi[rows], inputs=inputs, frame=frame)
 
     def world(self, local: Array) -> Array:
-        """Local directions (N, 3) in world space, rounded to float32."""
+        """Directions (N, 3), converted from local frames to world space and rounded to float32."""
         if self.frame is None:
             return local
         return float32((self.frame @ local[:, :, np.newaxis])[:, :, 0])
@@ -250,7 +250,7 @@ def sky(normal: Array) -> Array:
 
 @lru_cache(maxsize=1)
 def sky_map() -> NDArray[np.float32]:
-    """Irradiance of the sky divided by pi, a latitude-longitude map, (SKY_ROWS, 2 SKY_ROWS, 3)."""
+    """Latitude-longitude map of the sky's irradiance divided by pi, (SKY_ROWS, 2 SKY_ROWS, 3)."""
     directions, _ = textures.latlong_directions(SKY_ROWS, 2 * SKY_ROWS)
     return sky(directions @ base.TURN[:3, :3]).reshape(SKY_ROWS, 2 * SKY_ROWS, 3).astype(np.float32)
 

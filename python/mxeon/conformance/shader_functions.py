@@ -204,7 +204,7 @@ class FunctionProbe:
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
-        """Values of the library's functions. The key True is for deliberately wrong arguments."""
+        """Values of the library's functions, by whether the arguments are deliberately wrong."""
         return {False: self._values(1.0), True: self._values(0.95)}
 
     @cached_property
@@ -218,9 +218,9 @@ class FunctionProbe:
         return row.error.plus(self.turn) if row.turns else row.error
 
     def _values(self, scale: float) -> Mapping[str, Array]:
-        """Values of all functions that a library shares with eonlib, for a scaled last argument.
+        """Values of all functions that the library and eonlib both define.
 
-        A single call of the host evaluates all functions.
+        The last argument of each function is multiplied by `scale`. The host is called once.
         """
         language, columns = self.host.language, random_columns()
         names = [name for name in functions.names(language) if name not in self.missing_functions]

@@ -33,7 +33,7 @@ class Input:
     type: str = "float"  # MaterialX type
     low: ArrayLike = 0.0  # lower end of the range of random values, or one end per component
     high: ArrayLike = 1.0  # upper end of the range of random values, or one end per component
-    edges: tuple[float, ...] = ()  # half of the special samples use these values
+    edges: tuple[float, ...] = ()  # values that half of the special samples have
     # Value that must change the result, or None for inputs without a visible effect.
     change: ArrayLike | None = None
     needs: Values = field(default_factory=dict, hash=False)  # inputs that make the change visible
@@ -44,7 +44,7 @@ class Input:
     equal: bool = False  # whether the two components are equal in half of the samples
     # Values of the input in two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
-    variable: str = ""  # shader variable that hosts set, if the input's default reads the variable
+    variable: str = ""  # shader variable from which the default value is read; "" for none
     default: ArrayLike = 1.0  # value in documents that must set the input
     beyond: tuple[float, ...] = ()  # values outside of [low, high] that checks also use
     ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps the input
@@ -112,7 +112,7 @@ class Ability(Flag):
     EMISSION = auto()
     SURFACE = auto()  # emitting surfaces
     MEDIUM = auto()
-    IMPLEMENTATION = auto()  # nodes that are only checked for an implementation
+    IMPLEMENTATION = auto()  # nodes for which only the existence of an implementation is checked
     OUTPUT = auto()  # nodes whose outputs are numbers or colors
     # Abilities that checks require.
     CLIENT = auto()  # run the shader's complete main() function with a client's bindings
@@ -173,7 +173,7 @@ class Spec(ABC):
 
     @abstractmethod
     def document(self, inputs: Values | None = None) -> str:
-        """MaterialX text of a material that consists of this node with the given inputs."""
+        """MaterialX document with a material that consists of this node with the given inputs."""
 
     @property
     def side(self) -> float:
@@ -254,7 +254,7 @@ class LobeSpec(ValueSpec):
         return {**nodes.input_types(self.node), **{each.name: each.type for each in self.inputs}}
 
     def two_lobes(self) -> str:
-        """MaterialX text of the sum of two lobes of the node. The second lobe has its own frame."""
+        """MaterialX document with the sum of two lobes of the node, each in a separate frame."""
         axes = dict.fromkeys(nodes.FRAME_INPUTS, calls.TANGENT) | {"normal": calls.NORMAL}
         frame = {name: axes[name] for name in axes if name in nodes.input_types(self.node)}
         modes = {"first": self.mode, "second": {**self.mode, **frame}}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Check texts that no host runs: shader functions, sources of nodes, and generated shaders.
+"""Check code that no host runs: shader functions, sources of nodes, and generated shaders.
 
-Each check counts faults, and no fault is allowed. The negative control of a check is a text with an
+Each check counts faults, and no fault is allowed. The negative control of a check is code with an
 additional fault. The documentation of renderers defines the meaning of closure arguments.
 """
 
@@ -60,7 +60,7 @@ CLAIMS = {
 
 
 def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[Result, ...]:
-    """Results of all checks of texts for a library, including texts of the nodes `subjects`."""
+    """Check the source code of a library, and the MDL code of the nodes `subjects`."""
     subjects = tuple(subjects)
     results = [
         _judged("closure", each.title, "mdl", library, partial(_closure_faults, each, library))
@@ -86,7 +86,7 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
 def _judged(
     check: str, subject: str, target: str, library: str, faults: Callable[[], Faults]
 ) -> Result:
-    """The result of a check of one target's text, or of texts of several targets."""
+    """The result of checking the source code of one target, or of several targets."""
     claim, quantity, variant = CLAIMS[check]
     named = f"{subject}, {target}" if target else subject
     place = Result(check, claim, named, SOURCE, library, NOT_RUN)
@@ -107,7 +107,7 @@ def _judged(
 
 
 def _twins(library: str) -> Faults:
-    """Functions whose texts differ between GLSL and OSL. The negative control changes a number."""
+    """Functions whose code differs between GLSL and OSL. The negative control changes a number."""
     glsl, osl = (COMMENT.sub(" ", twins(language, library)) for language in LANGUAGES)
     expected, *others = map(parts, (glsl, osl, re.sub(r"\b\d+\.\d+\b", "777.0", osl, count=1)))
     differing, control = (
@@ -124,7 +124,7 @@ def _clashes(library: str) -> Faults:
         search = library_tree.search_path(name)
         return dict.fromkeys(texts.clashes(load_library(name), target, search, twice), target)
 
-    targets: dict[texts.Clash, str] = {}  # first target with each clash
+    targets: dict[texts.Clash, str] = {}  # first target with each clash of names
     for target in SOURCES:
         known = clashes("stock", target)
         new = {each: target for each in clashes(library, target) if each not in known}
@@ -187,7 +187,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 
 def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs that a call never passes, because no argument has the unique value of the input."""
+    """Inputs that a call ignores, so that no argument has the unique value of the input."""
     expression = _lobe_expression(subject, target, library)
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}
@@ -241,7 +241,7 @@ FUNCTIONS: Mapping[str, object] = {
     "material_surface": lambda *, scattering: scattering,
     "df::weighted_layer": weighted_layer,
     "df::diffuse_reflection_bsdf": diffuse_reflection_bsdf,
-    # The closure is FON. If the flag `energy_compensation` is set, a white lobe is added.
+    # MDL's closure evaluates FON. If the flag `energy_compensation` is set, a white lobe is added.
     PBRLIB: lambda mxp_weight, mxp_color, mxp_roughness, mxp_normal, mxp_energy_compensation: weighted_layer(
         mxp_weight, diffuse_reflection_bsdf(mxp_color, mxp_roughness, mxp_energy_compensation), (), mxp_normal),
 }
@@ -249,7 +249,7 @@ FUNCTIONS: Mapping[str, object] = {
 
 
 def _closure_faults(subject: diffuse.DiffuseSpec, library: str) -> Faults:
-    """Closure arguments that differ from the inputs. The negative control drops the weight."""
+    """MDL closure arguments that differ from the inputs. The negative control drops the weight."""
     expression = _lobe_expression(subject, "mdl", library)
     rng = generator()
     drawn = subject.random_inputs(rng, DRAWS)

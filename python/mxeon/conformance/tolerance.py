@@ -43,7 +43,7 @@ class Measurement:
 
 
 def _largest(values: Array) -> Array:
-    """The maximum over the last axis by a loop, which is five times as fast as `numpy.max`."""
+    """The maximum over the last axis. A loop is five times as fast as `numpy.max`."""
     return reduce(np.maximum, np.moveaxis(values, -1, 0))
 
 
@@ -182,7 +182,7 @@ class Tolerance:
         return replace(self, terms=(*self.terms, *terms))
 
     def term(self, words: str, factor: float = 1.0) -> Term:
-        """The tolerance as a term of another tolerance."""
+        """A term for another tolerance, whose value is this tolerance's value times `factor`."""
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:

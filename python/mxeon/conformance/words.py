@@ -628,7 +628,7 @@ def summary(run: Run) -> str:
 
 
 def origins(run: Run) -> tuple[str, ...]:
-    """The numbers of files from each folder judged as a library, and from MaterialX."""
+    """For each folder judged as a library, the number of its files and of MaterialX's files."""
     return tuple(
         f"library {folder}: {counted(len(files['folder']), 'file')} from the folder, "
         + (f"{len(files['MaterialX']) or 'none'} from" if "MaterialX" in files else "loaded before")
@@ -638,7 +638,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """A line with all subjects that no check judges and the reasons, or () if there are none."""
+    """A line that lists subjects that no check judges, and the reasons; () without subjects."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)

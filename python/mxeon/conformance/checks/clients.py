@@ -35,7 +35,7 @@ WHITE_MAP, WARM_MAP = (np.full((1, 1, 3), each, np.float32) for each in (1.0, (0
 # Paths of the document's inputs, and the names by which the function `material` sets the inputs.
 NAMES = {"shading/mix": "mix", "front/opacity": "front", "back/opacity": "back"}
 LEAST_VARIANCE = 1e-5  # smallest variance of depths in a shadow map
-TRANSPARENT = 0.3333  # weight of each color channel when a transparency becomes alpha
+TRANSPARENT = 0.3333  # weight of each color channel in the alpha of a transparent surface
 # A shadow matrix that maps the sphere's depths into [0.2, 0.7]. The homogeneous coordinate w is
 # 1.5, so shaders must divide by w.
 SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0.0, 0.0, 0.0, 1.5)
@@ -57,7 +57,7 @@ def same(frame: Frame) -> Frame:
 
 
 def premultiplied(frame: Frame) -> Frame:
-    """A frame without an environment. From MaterialX 1.39.5, mixes scale the weights of lobes."""
+    """A frame without an environment. Since MaterialX 1.39.5, mixes scale the weights of lobes."""
     from mxeon.shaders.options import offers
 
     methods = Methods("none", "opacity", premultiplied=offers("premultiplied") or None)

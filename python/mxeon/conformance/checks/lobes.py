@@ -37,8 +37,8 @@ from mxeon.models.nodes.lobes import FORMS, TILTED
 from mxeon.shaders.methods import Methods
 
 LEAST_LIGHT = 0.01  # smallest albedo by which light of an uneven environment is divided
-# Error of a lookup direction, in radians, because engines filter textures with 8-bit weights. The
-# diagonal of a texel is sqrt(2) pi / 128.
+# Error of a lookup direction, in radians. Engines filter textures with 8-bit weights. The diagonal
+# of a texel is sqrt(2) pi / 128.
 TEXEL = math.sqrt(2.0) * math.pi / samples.SKY_ROWS * 2.0**-8
 # Largest error of an engine's arc sine, in radians, measured for the software rasterizer llvmpipe.
 # Other engines are ten times as accurate.
@@ -180,7 +180,7 @@ def opaque_values(case: Case, output: str, branch: str) -> Iterator[Compared]:
 
 
 def diagnose_opaque(case: Case) -> Diagnosis:
-    """Explain outputs of an opaque node. The text limits weights to [0, 1], so others are open."""
+    """Explain outputs of an opaque node. The specification only defines weights in [0, 1]."""
     found = {each: list(opaque_values(case, *each)) for each in ZEROS}
     for compared in chain.from_iterable(found.values()):
         weight = np.broadcast_to(compared.batch.inputs.get("weight", 1.0), len(compared.batch.wo))

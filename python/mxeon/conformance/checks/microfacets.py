@@ -488,7 +488,7 @@ def through_sphere(wo: Array, index: Array, facet: Array) -> Array:
 
 def smooth(case: Case) -> Batch:
     batch = case.few[0].first(512)
-    if "color0" in batch.inputs:  # add a nearly white color0, which has the highest IOR
+    if "color0" in batch.inputs:  # add a nearly white color0, from which a high IOR follows
         batch = batch.with_row(0, directions_at(0.1, 0.5), weight=1.0, color0=0.99)
     return batch.where(batch.wo[:, 2] >= LEAST_COSINE).altered(roughness=(0.0, 0.0))
 
@@ -518,7 +518,7 @@ def wrong_inputs(case: Case) -> list[str]:
 
 Function = Callable[[Batch], Array]
 ROUGHNESSES = (1.0, 0.3)  # alphas with strong and with weak compensation
-# Alphas that need almost no compensation. Shaders may average F over fewer cosines.
+# Alphas that need almost no compensation.
 SMOOTH = (0.04, 0.005)
 LEAST_F = 0.01  # films with a smaller Fresnel reflectance are not compared
 THIN_LIMIT = 1e-3  # thickness in nm at which a film must have no effect
@@ -564,7 +564,7 @@ def film_energy(case: Case) -> Iterator[Compared]:
 
 
 def diagnose_average(case: Case) -> Diagnosis:
-    """Test whether k is missing, or whether F_ss is F at one cosine or a mean of F0 and F90."""
+    """Test whether k is missing, or if F at one cosine or a mean of F0 and F90 replaces F_ss."""
     batch, measured, expected = film_average(case)
     (_, k), (_, expected_k) = (
         film_factors(case, value, batch, 1.0) for value in (case.direct, case.expected)

@@ -81,7 +81,7 @@ LEAST_DRAWN = 1e-5  # ratio of density to value up to which light counts as neve
 # Sample weight (an albedo) below which the probabilities of lobes have few correct digits, because
 # a sheen's fitted albedo crosses 0.
 LEAST_ALBEDO = 1e-3
-LEAST_COUNTED = 0.2  # minimum roughness if samples are counted, because the cells are coarse
+LEAST_COUNTED = 0.2  # smallest roughness if samples are counted, because the cells are coarse
 # GLSL expressions that convert a parameter of type float or vec3 to the type of an input.
 CONVERTED = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
 VECTORS = ("vector2", "vector3", "color3")
@@ -333,7 +333,8 @@ def pdf(case: Case) -> Measurement:
 
 
 def parts(case: Case) -> Iterator[tuple[Cause, Compared]]:
-    """Compare weight times density with value, and density with material_pdf. Find unsampled light.
+    """Compare weight times density with value, and density with material_pdf(). Find unsampled
+    light.
 
     Each comparison is paired with the cause to report. Measured values are divided by expected
     values, and errors are divided by the amplification of roundings.
@@ -481,7 +482,7 @@ def path_inside(case: Case) -> Iterator[Compared]:
 
 
 def clear_draws(case: Case, inside: bool) -> Iterator[tuple[Batch, Array, Array]]:
-    """Views of a clear solid, each with sampled directions and with weights divided by the tint."""
+    """Views of a clear solid, sampled directions, and sample weights divided by the tint."""
     values, _ = SOLIDS[case.spec.node]
     [(text, _)] = subjects(case)
     inputs = {**values, "lobe_normal/value": NORMAL, "lobe_tangent/value": TANGENT}
@@ -539,7 +540,7 @@ LOOKS = (
     (DRAWS, ORDERS[:4], 3.0),
     (DRAWS, ORDERS, 0.0),
 )
-CLOSE = 2.0  # largest difference between two quadratures of a patch, in samples
+CLOSE = 2.0  # largest accepted difference between two quadratures of a patch, in samples
 MOST_DEVIATIONS = 6.0  # tolerance of the check `pdf`, in standard deviations
 CONE = 0.02  # angular width of the first ring of cells, in radians
 LEAST = 1e-7  # angle from the pole, in radians, up to which a density counts as constant

@@ -74,8 +74,8 @@ def values(case: Case) -> Compared:
     """Values compared with the layer equation.
 
     Shaders fit anisotropic lobes less accurately. The error of a pair with an anisotropic lobe is
-    therefore multiplied by VALUE_ERROR / STRETCHED_FIT, or replaced by the mean error of all pairs
-    with anisotropic lobes if the mean is larger.
+    therefore multiplied by VALUE_ERROR / STRETCHED_FIT. If the mean error of all pairs with
+    anisotropic lobes is larger, the mean error replaces the product.
     """
     [batch] = case.batches
     expected = case.expected(batch)
@@ -175,7 +175,7 @@ SENTENCE = Comparison("value", direct_values, lambda case: case.valued.value_can
 
 
 def diagnose_sentence(case: Case) -> Diagnosis:
-    """Find the formula with which the shader, or else the shader's graph, implements a sentence."""
+    """Find the formula that the shader, or else the shader's graph, uses for a sentence."""
     from mxeon.conformance.reference import Reference
 
     spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)

@@ -53,10 +53,10 @@ REMAINING = 0.1  # smallest share of the light that must remain after a cure
 # An explanation is complete if the distance between explained and measured values is below SAME
 # times the distance of every other explanation. For a near explanation, the factor is NEAR.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # largest distance of a near model, relative to the distance of the expected model
-NAMED = 0.5  # largest distance of a model to report, relative to the distance of black values
-INEXACT = 30.0  # errors up to 30 tolerances count as inaccuracy of the expected model
-LEAST_LIGHT = 1e-3  # cosine of the light below which faults of the cosine look alike
+FAR = 0.2  # a near model has at most this fraction of the expected model's distance
+NAMED = 0.5  # largest distance of a reported model, as a fraction of the distance of black values
+INEXACT = 30.0  # errors up to 30 times the tolerance count as inaccuracy of the expected model
+LEAST_LIGHT = 1e-3  # smallest cosine of the light at which faults that change the cosine differ
 
 
 def defect(key: str, *names: str) -> Diagnosis:
@@ -361,7 +361,7 @@ LOOKUPS: dict[str, Callable[[Batch], Array]] = {
 
 
 def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) -> Diagnosis:
-    """Explain nonzero outputs by a constant value, by a region and by the branches."""
+    """Explain nonzero outputs by a constant value, by a region, and by the kinds of light."""
     branches: dict[Cause, list[str]] = {}
     for (output, branch), compared in passed.items():
         values = np.concatenate([each.measured[EXACT.wrong(each)] for each in compared])
@@ -410,7 +410,7 @@ def _region(cases: Sequence[Compared], tolerance: Tolerance) -> tuple[Cause, ...
 
 
 def ignored(name: str) -> Callable[[Case], Diagnosis]:
-    """A function that reports an ignored input or, if the input has an effect, explains values."""
+    """A function that reports that an input is ignored or, if not, explains the values."""
     return lambda case: Diagnosis(without_effect(case, name) or VALUE.diagnose(case).causes)
 
 

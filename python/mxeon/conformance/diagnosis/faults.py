@@ -118,7 +118,7 @@ ENVIRONMENT_FAULTS = (
 
 
 def exchanges(names: Iterable[str]) -> Iterator[Fault]:
-    """Faults that exchange two inputs, or all inputs of two nodes named in paths (`top/weight`)."""
+    """Faults that exchange two inputs, or all inputs of two nodes (like `top` in `top/weight`)."""
     for pair in combinations(dict.fromkeys(name.split("/")[0] for name in names), 2):
         yield Fault("inputs_exchanged", partial(_exchanged, *pair), names=pair)
 

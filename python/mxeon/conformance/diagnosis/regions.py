@@ -46,7 +46,7 @@ def region_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 def correct_except(
     cases: Sequence[Compared], tolerance: Tolerance, region: Region | None = None
 ) -> Cause:
-    """A cause with the number of wrong pairs and, if given, with the region of all wrong pairs."""
+    """A cause that states the number of wrong pairs and, if given, the region of these pairs."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     return Cause(Kind.REGION, region=region, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
 
@@ -134,7 +134,7 @@ def _parts(columns: Array, wrong: Mask) -> Iterator[tuple[str, Array]]:
 
 
 def unreached(values: Mapping[str, Sequence[float]]) -> tuple[Region, ...]:
-    """Regions without any pair of a node, because some inputs of the node have constant values."""
+    """Regions that cannot contain a pair, because some inputs of a node have constant values."""
     normal = np.array([[0.0, 0.0, 1.0]])
     inputs = {name: np.array([each if len(each) > 1 else each[0]]) for name, each in values.items()}
     return tuple(

@@ -126,7 +126,7 @@ class Views:
                         np.any(closure.arguments[f"{each}_tint"], axis=-1, keepdims=True)
                         for each in ("reflection", "transmission")
                     )
-                    # In mode T, which reflects nothing, only the reflection tint is black.
+                    # In mode T, the reflection tint is black, but the transmission tint is not.
                     albedo = np.where(reflects | ~passes, albedo, 0.0)
                 throughput = 1.0 - albedo
         except ValueError as error:

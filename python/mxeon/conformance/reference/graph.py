@@ -81,7 +81,7 @@ class Graph(Nodes):
             return np.asarray(nodes.fitted("color3", self._evaluate(path)), np.float64)
 
     def patterns(self, name_path: str) -> Iterator[tuple[list[mx.Element], Array]]:
-        """Drawable nodes on which an element depends, with values. Sources come before users."""
+        """Drawable nodes on which an element depends, with their values, sources before users."""
         order = TopologicalSorter(self._parts([self._root(name_path)])).static_order()
         for path in [each for each in order if each in self.elements]:
             if self.elements[path].isA(mx.Node) and self.elements[path].getType() in DRAWN:

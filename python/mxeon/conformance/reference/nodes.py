@@ -59,7 +59,7 @@ def _directions(mu: Array, phi: Array) -> Array:
 
 
 def _interpolated(series: Array, wo: Array, low: float, turns: bool) -> Array:
-    """Sums of a Chebyshev series in cos(2 phi) and, from `low` to 1, in sqrt(mu), (N, 3)."""
+    """Values (N, 3) of a Chebyshev series in cos(2 phi) and in sqrt(mu) from `low` to 1."""
     root = np.sqrt(np.minimum(wo[:, 2], 1.0))
     u = np.clip(2.0 * (root - low) / (1.0 - low) - 1.0, -1.0, 1.0)
     x, y = np.square(wo[:, 0]), np.square(wo[:, 1])
@@ -205,7 +205,7 @@ class ShadingPoints:
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at each view. If a picture has a single material, a series replaces integrals."""
+        """Albedo at each view, from integrals or, if a picture has one material, from a series."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:
@@ -230,7 +230,7 @@ class ShadingPoints:
         return ALBEDOS.value((contents(upright), *key), integrated)
 
     def geometry(self, name: str) -> Array:
-        """The geometric property with a MaterialX name. Raise NotRun for unknown names."""
+        """Values of a geometric property by its MaterialX name. Raise NotRun for unknown names."""
         known = {"Nworld": self.normal, "Tworld": self.tangent, "UV0": self.texcoord}
         known["Bworld"] = np.cross(self.normal, self.tangent)
         if (value := known.get(name)) is None:
@@ -365,7 +365,7 @@ def _row(node: mx.Node, inputs: Mapping[str, Array]) -> PbrNode:
 def _argument(node: mx.Node, port: str, value: Array, weight: Array) -> Array:
     """Value of an input: (1,) or (N,) for a number, and (1, C) or (N, C) for C components.
 
-    Where the lobe's weight is 0, the value may be NaN, so the value of another point is used.
+    Where the lobe's weight is 0, the value may be NaN, so the value at another point replaces NaN.
     """
     kind = node.getNodeDef().getActiveInput(port).getType()
     if kind not in WIDTHS:

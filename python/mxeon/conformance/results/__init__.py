@@ -37,7 +37,7 @@ VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 STATUSES = {PASSED: errors.PASSED, FAILED: errors.FAILED, NOT_RUN: errors.NOT_RUN}
 # Replaces a document's name in pictures of nodes, which belong to no document.
 PORTRAIT = "portrait"
-SOURCE = "source"  # replaces the host in checks of text, which need no host
+SOURCE = "source"  # replaces the host in checks of source code, which need no host
 SHADER_FUNCTIONS = "shader twins"  # subject of the checks of a library's functions
 RESULTS, JUNIT, PAGE = "results.json", "junit.xml", "report.html"
 REPORT = (RESULTS, JUNIT, PAGE, "pictures/*", "upstream/*")  # file patterns of a report
@@ -88,8 +88,8 @@ class Kind(Enum):
     MODEL = "model"  # the known model or defect nearest to the values
     FAULT = "fault"  # a wrong use of the correct model that reproduces the values
     ACCURACY = "accuracy"  # insufficient accuracy of the correct model
-    REGION = "region"  # the region of pairs and inputs with wrong values
-    NOT_FINITE = "not finite"  # the region of pairs and inputs without finite values
+    REGION = "region"  # values are wrong in the cause's region
+    NOT_FINITE = "not finite"  # values are NaN or infinite in the cause's region
     CURE = "cure"  # input values that make the worst samples correct
     DEFECT = "defect"  # another known defect
     UNKNOWN = "unknown"
@@ -256,7 +256,7 @@ class Result(BriefRepr):
     - `check`, `claim`: Key of the check, and the sentence that the check tests.
     - `subject`: A node and its flag, or a document and its element.
     - `document`, `element`: Path of the judged document, and name path of the judged material; ""
-      for other checks, and without a result of single materials.
+      for other checks, and for a result that concerns no single material.
     - `verdict`: PASSED, FAILED or NOT_RUN; DIFFERS if the specification permits the error.
     - `error`, `tolerance`: Measured error and largest accepted error. A check passes if error <=
       tolerance.
@@ -372,7 +372,7 @@ class Picture:
 
     @property
     def shown(self) -> tuple[str, str]:
-        """The path of the document, which its name may share with others, and the element."""
+        """The path and the element of the document. Several documents may have one name."""
         return self.metadata.get("document", self.document), self.element
 
     @cached_property

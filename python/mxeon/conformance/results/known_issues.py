@@ -22,7 +22,7 @@ STOCK, EONLIB = "stock", "eonlib"
 RENDERER_NODES = "its own nodes"  # replaces the library in results of a renderer's own nodes
 Row = tuple[str, str]  # key of a check, and title of the subject
 Table = Mapping[str, Sequence[str]]  # checks by subject
-# Hosts that evaluate generated text, which MaterialX makes of the same GLSL as for "gl".
+# Hosts that run generated shaders, which MaterialX makes of the same GLSL as for "gl".
 GENERATED_GLSL = tuple(row.name for row in hosts.HOSTS if row.way == "pairs" and row.name != "gl")
 # A page begins with an optional comment that contains a row of TOML, followed by a title.
 PAGE = re.compile(r"(?:<!--\n(?P<row>.*?)\n-->\n)?(?P<text># (?P<title>[^\n]*)\n.*)", re.DOTALL)
@@ -40,12 +40,12 @@ class Issue:
 
     page: str  # file name without suffix
     title: str  # heading of the page, which states the defect
-    text: str = field(repr=False)  # text of the page, without the row of TOML
+    text: str = field(repr=False)  # the page without the row of TOML
     # Section of the index, by default the first word of the page's name; see
     # tools/site/ledger/pages.py.
     group: str
-    # Host that shows the defect, by default "gl". Generated text has the host "source". Defects
-    # that no check shows have the host "".
+    # Host that shows the defect, by default "gl". Defects of generated shader code have the host
+    # "source". Defects that no check shows have the host "".
     host: str = ""
     also: tuple[str, ...] = ()  # other hosts with the defect; "gl" implies GENERATED_GLSL
     # Library whose results show the defect: EONLIB for a defect of graphs, because graphs need
@@ -97,8 +97,8 @@ def issues() -> Mapping[str, Issue]:
 def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
     """The defect of a page, with the page's measurements.
 
-    Raises CheckError if the page does not begin with a row or a title, or if the row has an unknown
-    key.
+    Raises CheckError if the page does not begin with a row of TOML or a title, or if the row has an
+    unknown key.
     """
     parts = PAGE.fullmatch(text)
     if not parts:
@@ -119,7 +119,7 @@ def read_issue(page: str, text: str, measured: Mapping[str, object]) -> Issue:
 
 @cache
 def _converter() -> cattrs.Converter:
-    """A converter for the rows of pages, including tables of checks by subject."""
+    """A converter for the rows of TOML in pages, including tables of checks by subject."""
     converter = strict_converter({})
 
     def remains(entries: Sequence[dict[str, Any]]) -> dict[Row, tuple[Cause, ...]]:
@@ -200,7 +200,7 @@ def with_pages(result: Result, materialx: str = "") -> Result:
 
 
 def _explains(issue: Issue, result: Result, materialx: str) -> bool:
-    """Whether an issue explains the error, the diagnosis and the shader text of a result."""
+    """Whether an issue explains the error, the diagnosis and the shader code of a result."""
     row = result.check, result.subject
     # An issue with measured errors does not explain a shader that fails to compile.
     if result.error is None and issue.sizes:

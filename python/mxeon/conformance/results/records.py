@@ -16,7 +16,7 @@ from mxeon.io import files, records
 # NumPy parses file headers with `ast`. In Python 3.11, `ast` can fail when two threads use it:
 # https://github.com/python/cpython/issues/106905.
 READING = Lock()
-IMAGES = ("image", "reference", "judged")  # fields of a picture
+IMAGES = ("image", "reference", "judged")  # fields of a picture that contain images
 
 
 @dataclass(frozen=True)

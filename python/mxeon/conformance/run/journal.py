@@ -170,7 +170,7 @@ def read_journal(folder: str | os.PathLike[str]) -> tuple[Plan, dict[int, Findin
 
 
 def refusal(folder: str | os.PathLike[str] | None, differences: Sequence[str]) -> str:
-    """A message that the run in a folder cannot be resumed, because of the given differences."""
+    """A message that lists the differences due to which the run in a folder cannot be resumed."""
     remedy = "use a new folder, or omit --resume"
     return f"{folder}: holds another run ({listed(differences)}); {remedy}"
 
@@ -194,7 +194,7 @@ def _read(folder: Path) -> tuple[Plan, dict[int, Findings], int]:
     path, converter = folder / JOURNAL, make_converter((folder / JOURNAL).parent)
     try:
         with open(path, "rb", opener=regular) as file:
-            # The last line may be incomplete.
+            # An interrupted run may leave an incomplete last line.
             lines = [line for line in file if line.endswith(b"\n")]
     except FileNotFoundError:
         raise InputError(f"{folder}: must hold the {JOURNAL} of a run; there is none") from None

@@ -158,7 +158,7 @@ class Task:
     # Key of a row of `mxeon.conformance.checks`, or HOST, SOURCE, PICTURE, STUDIO, FUNCTIONS,
     # RELEASE or DOCUMENT.
     check: str
-    # Title of a node, path of a document, SHADER_FUNCTIONS, EVERY_NODE, or nodes after RELEASE
+    # Title of a node, path of a document, SHADER_FUNCTIONS, EVERY_NODE, or names of nodes
     subject: str
     host: str
     library: str
@@ -174,7 +174,7 @@ class Plan(Scope):
     """All tasks of a run and all data that findings depend on. Equal plans have equal findings."""
 
     tasks: tuple[Task, ...]
-    # Values of the command's options for policy, seed and methods.
+    # Values of the options of `mxeon check` for policy, seed and lighting methods.
     options: dict[str, str] = field(default_factory=dict)
     # SHA-256 of each file that the findings depend on, or "" for a file that cannot be read. Plans
     # of runs without a journal contain no files.
@@ -316,7 +316,7 @@ def make_plan(
     comparisons = [each for each in tasks if each.check == RELEASE and os.path.isabs(each.library)]
     tasks = _selected(tasks, list(map(str, files)), nodes, reading)
     # Report hosts that measure nothing. Renderers that read no documents are left out, because
-    # DOCUMENT tasks report them.
+    # DOCUMENT tasks report such renderers.
     measuring = {
         task.host for task in tasks if task.check != DOCUMENT or not host_row(task.host).target
     }

@@ -26,7 +26,7 @@ NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=T
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # Both values are the same product with an exact factor, so they differ by one rounding.
+    # Both values are the same product with an exact factor, so one rounding separates both values.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }

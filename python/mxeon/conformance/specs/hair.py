@@ -21,8 +21,8 @@ from mxeon.models.nodes.lobes import BESSEL, CLAMPED, HAIR_NODE, UNIFORM
 from mxeon.models.nodes.node import Scattering
 
 COUNTS = replace(PbrSpec.counts, diagnosed=1 << 9)
-LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # lower limits of random roughness
-WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # lower limits of roughness for integrated lobes
+LEAST_VARIANCE, LEAST_SCALE = 1e-4, 0.01  # smallest variance and scale of random lobes
+WIDE_VARIANCE, WIDE_SCALE = 0.05, 0.3  # smallest variance and scale of lobes that are integrated
 # Share of light that comes from the viewer's side: for R, for TT, for TRT, and for higher orders.
 FRONT = np.array([1.0, 0.0, 1.0, 0.5])
 STEP = 1e-6  # step of an angle, in radians, for finite differences
@@ -92,7 +92,7 @@ class Region:
     """A check of the hair node in a range of views and roughnesses."""
 
     claim: str
-    azimuths: tuple[float, float] = (0.3, 1.2)  # angles of views to the normal, in radians
+    azimuths: tuple[float, float] = (0.3, 1.2)  # angles between view and normal, in radians
     variances: tuple[float, float] = (0.2, 1.0)
     scales: tuple[float, float] = (0.2, 1.0)
     tints: Values = field(default_factory=lambda: R_AND_TT)
@@ -214,7 +214,7 @@ class HairSpec(PbrSpec):
         return {**inputs, **wide, "cuticle_angle": np.full(len(inputs["ior"]), 0.5)}
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Cover the sphere by a Gauss rule in the sine of the inclination, and by uniform azimuths.
+        # Cover the sphere by Gauss nodes in the sine of the inclination and by uniform azimuths.
         x, w = np.polynomial.legendre.leggauss(count)
         phi = np.pi * (np.arange(2 * count) + 0.5) / count
         sine, angle = (each.ravel() for each in np.meshgrid(x, phi))

@@ -87,7 +87,7 @@ class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
         return samples.sky(self.side * batch.normal)
 
     def integral(self, batch: Batch) -> Array:
-        """Integral of the values over all lights, including the weight, (N, 3)."""
+        """Integral of the values over all light directions, including the weight, (N, 3)."""
         return _albedo(self.row.integral or self.row.albedo, batch)
 
     @property
@@ -157,7 +157,7 @@ class Mode(spec.Names):
 
 
 def mode_of(row: PbrNode, title: str = "") -> Mode:
-    """Fields of a row's spec. The default title lists the inputs that select the mode."""
+    """Fields of a spec for `row`. The default title lists the inputs that select the mode."""
     words = [row.category, *(f"{name} {value}" for name, value in row.fixed.items())]
     return {**spec.named(row, title or ", ".join(words)), "row": row}
 
@@ -184,7 +184,7 @@ class PbrSpec(ScatteringSpec):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Candidates in addition to models: zero and, for a transmitting lobe, a reflection."""
+        """Functions that may explain values: zero and, for a transmitting lobe, the reflection."""
         if not self.row.transmits:
             return (spec.ZERO,)
         opaque = replace(self, row=replace(self.row, transmits=False))
@@ -217,7 +217,7 @@ class PbrSpec(ScatteringSpec):
         return Batch(wo, wi, inputs)
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Use uniform azimuths, and Gauss nodes in the cosine, dense at the horizon and the normal.
+        # Use uniform azimuths. Gauss nodes in the cosine are dense at the horizon and the normal.
         x, w = np.polynomial.legendre.leggauss(count)
         t = 0.5 * (x + 1.0)
         mu = t * t * (3.0 - 2.0 * t)
@@ -242,7 +242,7 @@ def _albedo(albedo: Callable[[Array, Inputs], Array], batch: Batch) -> Array:
 def _throughput(
     batch: Batch, albedo: Callable[[Array, Inputs], Array], colored: bool = False
 ) -> Array:
-    """max(1 - albedo, 0), (N, 3). Unless `colored`, the albedo excludes absorption by colors."""
+    """max(1 - albedo, 0), (N, 3). Unless `colored`, colors that only absorb light are white."""
     return np.maximum(1.0 - _albedo(albedo, batch if colored else uncolored(batch)), 0.0)
 
 

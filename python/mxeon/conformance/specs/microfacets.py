@@ -214,11 +214,11 @@ class FacetSpec(lobes.PbrSpec):
     least_cosine: float = sheen.FIT_COSINE
 
     def prefiltered(self, batch: Batch) -> Array:
-        """Albedo by MaterialX's fit for prefiltered environments, (N, 3)."""
+        """Albedo that MaterialX fits for prefiltered environments, (N, 3)."""
         return batch.strength * LOBES[self.node].prefiltered(batch.wo, spec.broadcast_inputs(batch))
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """The batches of any lobe, and pairs near the mirror direction. All lobes are isotropic."""
+        """The usual batches, and pairs near the mirror direction. All lobes are isotropic."""
         batches = (batch.where(_has_curve(batch)) for batch in super().batches(counts))
         return tuple(_with_one_alpha(batch) for batch in (*batches, self.mirrored(counts)[0]))
 
@@ -444,7 +444,7 @@ class TransmissionSpec(FacetSpec):
         return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
-        """Share of light that leaves a denser medium of IOR `index`, mean over channels, (N,)."""
+        """Share of light that leaves a medium of IOR `index`, averaged over channels, (N,)."""
 
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
@@ -481,7 +481,7 @@ TRANSMISSION_SPECS = tuple(
 # three cosines, and over the hemisphere (F_ss) by another sum over three cosines.
 FILM_SEEN = 7.82e-2
 FILM_OILED = 6.92e-2  # error of a film's albedo for films with an IOR of at least 1.25
-FILM_PHASE = 71.0  # largest phase of the first order, in radians, at 1000 nm and an IOR of 2.5
+FILM_PHASE = 71.0  # phase of the first order of interference, in radians, at 1000 nm and IOR 2.5
 CURVE_ROUNDINGS = 10 * 9.5 + 16  # 10 in a phase, times the curve's slope 9.5, plus 16 in the curve
 
 FILM_ALBEDO = sum_in(
@@ -563,14 +563,14 @@ FRINGED = STEEP._replace(thickness=(50.0, 1000.0))
 GLOSSY = STEEP._replace(alpha=(0.03, 0.1))  # visible facets are similar, so few cosines suffice
 # Lobes with two alphas. Shaders approximate the albedos by albedos of isotropic lobes.
 BRUSHED = Films(1 << 5, (0.05, 1.0), (0.1, 1.0), (50.0, 100.0))
-# Smooth lobes, whose values depend on the curve at one cosine. Few orders of interference matter.
+# Smooth lobes reflect at nearly one cosine. Few orders of interference matter.
 SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))
 # Smooth lobes at grazing views under thin films. Many orders of interference matter.
 ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
 # Numbers of samples are small, because averages of films are slow.
 FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
 LEAST_OIL = 1.2  # smallest IOR of films with a visible effect
-LEAST_FILM = 1.25  # smallest IOR of films for albedos, as metals may reflect totally below 1.25
+LEAST_FILM = 1.25  # smallest IOR of films in albedo checks; below 1.25, metals may reflect totally
 LEAST_FACET = 0.1  # smallest cosine to the half vector, because grazing light needs all orders
 THICK = (0.0, 1.0, 100.0, 1e4)  # film thicknesses at the edges of the domain, in nm
 

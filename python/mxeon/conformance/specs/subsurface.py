@@ -69,7 +69,7 @@ SUBSURFACE = SubsurfaceSpec(
 
 
 def spread(batch: Batch, far: float = FAR, **changes: ArrayLike) -> Array:
-    """Diffused light on a unit sphere, (N, 3), for inputs with `changes`."""
+    """Diffused light on a unit sphere, (N, 3), after `changes` of the batch's inputs."""
     inputs = batch.altered(**changes).inputs
     reach = inputs["radius"] / (1.0 - inputs["anisotropy"])
     light = [np.interp(batch.wi[:, 2], COSINES, _profile(each, far)) for each in reach.tolist()]
@@ -83,7 +83,7 @@ def _profile(reach: float, far: float) -> Array:
 
 
 def _around(batch: Batch) -> Array:
-    """Light on a unit sphere by MaterialX's implementation, (N, 3)."""
+    """Light that MaterialX's implementation computes on a unit sphere, (N, 3)."""
     mu = np.clip(batch.wi[:, 2], -1.0, 1.0)
     radius = np.broadcast_to(batch.inputs["radius"], batch.wi.shape)
     return np.asarray(batch.inputs["color"] * circle_blur(mu, radius, body=1.0))

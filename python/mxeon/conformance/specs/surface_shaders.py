@@ -99,7 +99,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
     others: tuple[Input, ...]  # inputs that only the checks of energy and films vary
     # Inputs without an effect in rasterizers; see docs/upstream/surface_inputs.md.
     without_effect: tuple[str, ...]
-    white: Values  # inputs of a material that is lossless by the layer equation
+    white: Values  # inputs with which the layer equation loses no light
     glass: Values  # inputs of clear glass
     finish: tuple[str, ...]  # inputs of glass that may vary: roughness and IOR
     # For each input without an effect by itself, values of other inputs that enable the input.
@@ -176,7 +176,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
         return self._reference(batch, "environment")
 
     def transmitted(self, batch: Batch, opacity: bool) -> Array:
-        """Uniform environment light that passes by opacity if `opacity`, else by refraction."""
+        """Transmitted environment light. If `opacity`, opacity replaces refraction."""
         return self._reference(batch, "opacity" if opacity else "transmission")
 
     def clear(self, batch: Batch) -> Batch:

@@ -22,8 +22,8 @@ from mxeon.models.surfaces import gltf, lobes, open_pbr, standard_surface, usd_p
 from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # names of a model's alternative formulas
-PAIRS = 24  # number of direction pairs, few because an expected albedo takes a millisecond
-GRAZING = 0.05  # directions with smaller cosines are replaced by SLANTED
+PAIRS = 24  # number of direction pairs, each of which takes a millisecond
+GRAZING = 0.05  # smallest cosine; the direction SLANTED replaces grazing directions
 SLANTED = samples.float32([0.6, 0.0, 0.8])
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)
