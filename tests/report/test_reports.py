@@ -107,6 +107,24 @@ def test_each_kind_of_change_is_told(row):
     assert changes(before, after) == expected
 
 
+def test_documents_of_one_name_are_compared_by_their_folders():
+    def run(root, **verdicts):
+        results = (
+            replace(
+                made_run(verdict, subject="m.mtlx: look").results[0],
+                document=f"{root}/{name}/m.mtlx",
+            )
+            for name, verdict in verdicts.items()
+        )
+        return replace(GONE, results=tuple(results))
+
+    before = run("old", x=PASSED, y=FAILED)
+    added = [(OTHER, "value: none -> passed at 1e-07")]
+    assert changes(before, run("new", w=PASSED, x=PASSED, y=FAILED)) == added
+    worse = [(WORSE, "value, in x: passed at 1e-07 -> failed at 1e-07")]
+    assert changes(before, run("new", x=FAILED, y=FAILED)) == worse
+
+
 QON, FON = (
     caused("model", name, rms=1e-9, distances={name: 1e-9, "EON": 1.0}) for name in ("QON", "FON")
 )

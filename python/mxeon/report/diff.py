@@ -199,16 +199,21 @@ def read_report(content: dict[str, object]) -> Report:
 def compare(before: Report, after: Report) -> tuple[Change, ...]:
     """Changes between two reports, sorted by kind, host and library, with large changes first."""
     folders = _matching_folders(list(before.libraries), list(after.libraries))
-    renamed = (
+    renamed = [
         replace(each, library=folders.get(each.library, each.library)) for each in before.results
-    )
+    ]
+    # Older reports lack documents.
+    unknown = {_place(each) for each in renamed if not each.document}
+    shared = (_shared(renamed) | _shared(after.results)) - unknown
     names = {Path(each).name for each in (*after.documents, *after.refused)}
     known = {each.name: each for each in before.hosts}
     renewed = {each.name for each in after.hosts if known.get(each.name, each) != each}
     removed = {each for each in before.documents if Path(each).name not in names}
     changes = [
         *(Change(OTHER, "", "", "", each, "checked", "removed") for each in sorted(removed)),
-        *_result_changes(_by_place(renamed), _by_place(after.results), bool(removed), renewed),
+        *_result_changes(
+            _by_place(renamed, shared), _by_place(after.results, shared), bool(removed), renewed
+        ),
         *(  # refused documents have no results that could be compared
             Change(WORSE, "", "", "", each, "not refused", "refused")
             if each in after.refused
@@ -293,12 +298,29 @@ def _matching_folders(before: Sequence[str], after: Sequence[str]) -> dict[str, 
     return matches
 
 
-def _by_place(results: Iterable[Result]) -> dict[tuple[str, ...], Result]:
-    """Results keyed by host, library, check and subject. Keys of duplicates have a number."""
+def _place(result: Result) -> tuple[str, ...]:
+    return tuple(getattr(result, name) for name in PLACE)
+
+
+def _shared(results: Iterable[Result]) -> set[tuple[str, ...]]:
+    """Places of several results, because documents in several folders have the same name."""
+    places = {(_place(each), each.document) for each in results if each.document}
+    return {place for place, uses in Counter(place for place, _ in places).items() if uses > 1}
+
+
+def _by_place(
+    results: Iterable[Result], shared: Container[tuple[str, ...]]
+) -> dict[tuple[str, ...], Result]:
+    """Results by host, library, check and subject; if `shared`, also by the document's folder.
+
+    Keys of duplicates have a number.
+    """
     keyed: dict[tuple[str, ...], Result] = {}
     uses: Counter[tuple[str, ...]] = Counter()
     for result in results:
-        key = tuple(getattr(result, name) for name in PLACE)
+        key = _place(result)
+        if key in shared:
+            key = *key, f"in {Path(result.document).parent.name}"
         uses[key] += 1
         keyed[key if uses[key] == 1 else (*key, f"number {uses[key]}")] = result
     return keyed
