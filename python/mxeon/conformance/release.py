@@ -38,7 +38,8 @@ from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.released_graphs import differences, hidden, port_text, ports_of
 from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
-RELEASE, SUBJECT = "release", "definitions, units, graphs and sources"
+# Baselines identify results by the subject, so this text must not change.
+RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "Parts without a model are as MaterialX released them, or have the same values."
 SAMPLES = 64  # number of samples of a node's inputs
 MOST = 12  # maximum number of evaluated nodes
