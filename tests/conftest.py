@@ -58,7 +58,7 @@ def pytest_collection():
 
 
 def pytest_make_parametrize_id(val):
-    """Name test parameters by functions, rows or files; pytest would only number them."""
+    """Name test parameters by functions, rows or files. Without names, pytest uses numbers."""
     names = (getattr(val, each, None) for each in ("__name__", "name", "title", "page", "key"))
     return next((name for name in names if isinstance(name, str)), None)
 

@@ -64,4 +64,4 @@ def test_an_unknown_public_name_is_an_attribute_error():
 def test_no_module_is_imported_by_a_string_that_the_layers_cannot_see():
     texts = {path.name: path.read_text() for path in (ROOT / "python" / "mxeon").rglob("*.py")}
     named = {name for name, text in texts.items() if re.search(r'import_module\(f?"mxeon', text)}
-    assert named == {"mitsuba_worker.py"}  # the Python environment of Mitsuba may lack the plugins
+    assert named == {"mitsuba_worker.py"}  # Mitsuba's Python environment may lack mxeon's plugins

@@ -52,7 +52,7 @@ ON_MAIN = [page for page in PATCHES if {*CHANGED} & {*PATCHES[page].read_text().
 
 
 def rows_of(names):
-    """Checks on several pages, by host, with further causes that may explain a failure."""
+    """Checks that the named pages list, with causes by which a check may fail after the repair."""
     return {
         (*row, ISSUES[page].host or "gl"): ISSUES[page].remains.get(row, ())
         for page in names

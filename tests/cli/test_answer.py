@@ -48,7 +48,7 @@ def stock(verdict=FAILED, **fields):
 
 
 def wrong(largest, scene="back"):
-    """Fields of a failed picture in which a quarter of the pixels differ visibly."""
+    """Fields of a failed picture. A quarter of the pixels differ visibly from the reference."""
     difference = Difference(scene, largest, False, 0.25)
     return {"verdict": FAILED, "error": 0.1, "difference": difference}
 
@@ -156,7 +156,7 @@ def test_a_lobe_that_a_document_lacks_makes_no_combination_wrong_for_it():
         assert run.is_elsewhere(layer) == elsewhere
     named = replace(layer, pages=(), diagnosis=caused("defect", "throughput_of_lobes", sheen))
     assert replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(named)
-    # A defect without a page, or with a cause that names no lobe, counts for every document.
+    # A defect concerns every document if the defect has no page, or if the cause names no lobe.
     for counts in (replace(layer, pages=("genglsl_add_throughput",)), replace(layer, pages=())):
         assert not replace(run, contents={"a.mtlx": ("layer", metal)}).is_elsewhere(counts)
 

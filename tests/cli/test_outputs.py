@@ -20,7 +20,7 @@ from tests.support.command import CLAY, PLASTER, one_line
 from tests.support.documents import textured
 from tests.support.results import PREVIOUS, Run
 
-# Input files in the fixture's folder, by their role in a command.
+# Input files, by the file's role in a command.
 FILES = {
     "document": "look.mtlx",
     "include": "part.mtlx",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Faults of engines are reported. Tolerances include the errors of an engine's own functions."""
+"""Faults of engines are reported. Tolerances allow for errors of built-in functions."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ EON, SHADER = "oren_nayar_diffuse_bsdf, energy_compensation true", "standard_sur
 
 @pytest.fixture
 def judged_by(gl):
-    """Function that returns a judge of checks for a given subclass of the OpenGL host."""
+    """Function that judges checks with the given subclass of the OpenGL host."""
     opened = []
 
     def judge(kind):

@@ -14,7 +14,7 @@ from mxeon.shaders.library import examples_folder
 from tests.support.cases import pairs
 from tests.support.verdicts import FAILED, PASSED, Verdicts, said
 
-# Bundled documents without images. The reference can read images only on a sphere.
+# These bundled documents use no images. The reference supports images only on a sphere.
 EXAMPLES = (
     *("brushed_metal_wedge", "layered_white_furnace", "mixed_lobes", "openpbr_rough_base"),
     *("plaster", "standard_surface_rough_base", "tempered_steel", "velvet"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The seed changes the random samples and their errors, but no verdict."""
+"""The seed changes the random samples and the measured errors, but no verdict."""
 
 import json
 

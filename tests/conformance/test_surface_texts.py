@@ -31,7 +31,7 @@ def shader(node: str, library: str = "stock") -> Shader:
 
 
 def shown(spec: SentenceSpec, library: str = "stock") -> np.ndarray:
-    """Values of a surface shader's graph in float64, at the samples for one specified sentence."""
+    """Values of a surface shader's graph at the samples for one sentence of the specification."""
     [batch] = spec.batches(Counts())
     branch, _, factor = spec.evaluated
     count, made = len(batch.wo), shader(spec.text.node, library)
@@ -73,7 +73,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.mark.parametrize("spec", SENTENCES)
 def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
-    """Patched graphs may also use a formula that the specification permits."""
+    """A patched graph computes the specified formula or a formula that the specification permits."""
     [batch] = spec.batches(Counts())
     own, *others = spec.value_candidates
     forms = [each for each in others if each.permitted]

@@ -328,7 +328,7 @@ def test_a_requested_node_of_a_folder_is_compared_with_the_release(
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):
-    """If the cache no longer holds the release, a run loads the release again."""
+    """If MaterialX's release is no longer in the cache, a run loads the release again."""
     file, old, new, *wanted = CHANGED["alpha"]
     installed()
     read_library.cache_clear()

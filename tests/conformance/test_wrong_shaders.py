@@ -8,7 +8,7 @@ from tests.support.sharing import DRAWN
 from tests.support.verdicts import DIFFERS, FAILED, has
 from tests.support.wrong_libraries import wrong_library, wrong_stock
 
-# Paths name files of eonlib. File names without a folder are files of MaterialX.
+# Paths with a folder name files of eonlib. File names without a folder name MaterialX's files.
 LOBE, FACETS = "genglsl/lib/oren_nayar_lobe.glsl", "genglsl/lib/microfacet_lobe.glsl"
 CLEAR = "genglsl/lib/microfacet_transmission.glsl"
 HAIR, FILM = "genglsl/chiang_hair_bsdf.glsl", "genglsl/lib/thin_film.glsl"
@@ -489,7 +489,7 @@ def test_a_color_that_an_image_node_reads_wrongly_is_wrong_in_inputs_from_an_ima
 
 @pytest.mark.whole
 def test_every_check_of_a_node_has_a_shader_that_it_fails(stock, run):
-    """Each check fails for a row of ROWS, for stock MaterialX, or in another test."""
+    """Each check detects an error in a row of ROWS, in stock MaterialX, or in another test."""
     failing = {row[4] for row in ROWS}
     failing |= {each.check for each in stock.results if each.verdict == FAILED}
     checks = {each.check for each in (*stock.results, *run.results) if each.host == "gl"}

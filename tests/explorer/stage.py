@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Functions that change the view of the explorer's stage, and read its pictures as arrays."""
+"""Functions that change the view of the explorer's stage, and read the pictures as arrays."""
 
 import base64
 

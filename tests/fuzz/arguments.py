@@ -69,7 +69,7 @@ PLUMBING = (
     "mxeon.models.microfacet.node_",
     "mxeon.models.shading_model",
     "mxeon.models.surfaces",
-)  # prefixes of functions that are not tested
+)  # beginnings of full names of functions that are not tested
 TAKEN = (bool, str, float, int)  # argument types that get bad values, in addition to arrays
 
 ACCEPTED, REFUSED = 0, 2

@@ -265,7 +265,7 @@ OTHERS = (
 
 
 def includes():
-    """A case's implementation file, form of include, included file, depth, target, and function."""
+    """Rows of implementation file, form of include, included file, depth, target, and function."""
     for row in product(WAYS, FILES, DEPTHS, FUNCTIONS):
         yield "own.glsl", *row, 'function="own" '
     for name, target in product(BROUGHT, FUNCTIONS):

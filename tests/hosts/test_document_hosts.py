@@ -182,7 +182,7 @@ FITTED = "mx_ggx_dir_albedo(lobe.mu_o, lobe.alpha, F0, vec3(1.0))", "vec3(1.0)"
 def test_microfacets_in_the_dome_of_storm_are_as_bright_as_their_albedo(
     on_storm, gl, text, change, tmp_path
 ):
-    """mxeon brightens Storm's dome by 1 / 0.984 for diffuse lobes only."""
+    """mxeon brightens Storm's dome by 1 / 0.984 for diffuse lobes, but not for microfacets."""
     points = sphere(16)
     facing = points.mask & (points.normal[..., 2] > 0.05)
     view = direction(points.normal[facing][:, 2])

@@ -14,7 +14,7 @@ from mxeon.survey import browser
 from tests.support.availability import package
 
 BLENDER, NOWHERE = "MXEON_CYCLES_PYTHON", "/nowhere/python"
-DISPLAY = (  # Messages without a display, or without a renderer.
+DISPLAY = (  # Messages if the display or the renderer is missing.
     "(no display: .* no Xvfb|MaterialX's renderer does not load .*); "
     "on Debian: apt-get install libgl1 libsm6 libx11-6 xvfb$"
 )

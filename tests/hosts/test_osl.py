@@ -81,7 +81,7 @@ COUNT = 256
 
 
 def weighed(tree, factor=1.0):
-    """Scattering and emitting closures of a tree, each with the product of its weights."""
+    """Scattering and emitting closures of a tree, each with the product of all weights above."""
     if tree is None or tree.name == "transparent":
         return []
     if not tree.parts:
@@ -111,7 +111,7 @@ def for_cycles(host, node, wo, inputs, old="", new=""):
     ],
 )
 def test_the_closures_for_cycles_are_the_model_to_the_roundings(host, node, flag, model, largest):
-    """Cycles' EON has one factor of albedo too many, and Cycles' QON matches only for s >= 0."""
+    """Cycles' EON has one factor of albedo too many. Cycles' QON is correct only for s >= 0."""
     rng = np.random.default_rng(1)
     wo, wi = directions((2, COUNT), rng)
     wi[:, :2] *= np.where((wo[:, :2] * wi[:, :2]).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)

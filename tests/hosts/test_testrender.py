@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The host testrender, with programs that environment variables name, or with a recording.
+"""The host testrender runs the programs that environment variables name, or replays a recording.
 
 `tests.support.osl` contains recorded output of OSL's testrender.
 """

@@ -121,7 +121,7 @@ def test_a_sky_over_a_black_ground_lights_what_faces_it(shape):
 
 NOISE = np.random.default_rng(1).random((33, 33, 3))
 IMAGES = {".exr": np.float32(NOISE), ".png": np.uint8(255.0 * NOISE)}
-# Free disk space in bytes, given the size of the file.
+# Free disk space in bytes, as a function of the size of the file to write.
 ROOM = {
     "nothing": lambda size: 0,
     "little": lambda size: 100,

@@ -63,7 +63,7 @@ def means(model, name):
 
 @cache
 def exported():
-    """Folder of an exported kit. Tests must not change its files."""
+    """Folder of an exported kit. Tests must not change the files."""
     folder = Path(mkdtemp())
     export_kit(folder, SIZE)
     return folder

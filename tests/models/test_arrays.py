@@ -156,7 +156,7 @@ def jax():
     library = package("jax")
     library.config.update("jax_enable_x64", True)
     # The options make compilation fast. Emitters of fused loops would take twice as long as all
-    # other steps. Without splitting of modules, shared code is compiled only once.
+    # other steps. Shared code is compiled only once if modules are not split.
     library.config.update("jax_disable_most_optimizations", True)
     options = {"xla_cpu_use_fusion_emitters": False, "xla_cpu_parallel_codegen_split_count": 1}
     jit = partial(library.jit, compiler_options=options)

@@ -25,8 +25,8 @@ from tools.fits.varnish_walk import RHO, model_bins, walk, walked_bins
 
 CLAY = {"rho": np.array([0.7, 0.35, 0.12]), "roughness": 0.6}
 VARNISH = {"alpha": 0.3, "ior": 1.5}
-# Error of the average albedo of each interface. Curves of a varnish with 28 nodes have an error of
-# 2e-5 at alpha 0.01 and an index of refraction of 1.02.
+# Error of the average albedo of each interface. The curves of a varnish have 28 nodes, and an error
+# of 2e-5 at alpha 0.01 and an index of refraction of 1.02.
 INTERFACES = {"dielectric_over_eon": COAT, "varnished": 2e-5}
 every_interface = pytest.mark.parametrize("name", INTERFACES)
 COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0, 9))
@@ -37,7 +37,7 @@ COSINES = np.append([0.0, 1e-10, 1e-8, 1e-6, 1e-5, 1e-4], np.geomspace(1e-3, 1.0
 def test_curves_are_those_of_a_finer_quadrature(monkeypatch, alpha, ior):
     coat = constant_coat(alpha, ior)
     missing, reflected = coat.at(COSINES)
-    # Repeat the integration with more nodes, which are denser near grazing.
+    # Repeat the integration with more nodes.
     finer = {"LEAST_SCALE": 0.0, "SLOPE_NODES": 40, "PANELS": 6, "QUADRANT": 120}
     for name, value in finer.items():
         monkeypatch.setattr(slopes, name, value)

@@ -32,7 +32,7 @@ def largest_quotient(wo, wi):
 
 
 def assert_same(value, again, wo, wi):
-    """Assert that two evaluations agree. NumPy may round vectorized functions differently."""
+    """Assert that two evaluations agree. NumPy's rounding may depend on the shape of the arrays."""
     scale = largest_quotient(np.atleast_2d(wo), np.atleast_2d(wi))
     assert (np.pi * np.abs(value - again) <= 2.0 * tolerances.BRDF * scale[..., np.newaxis]).all()
 

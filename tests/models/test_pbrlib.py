@@ -83,7 +83,7 @@ def test_a_node_is_reciprocal_if_its_row_says_so(row):
 
 @pytest.mark.parametrize("row", ROWS + FILM_NODES)
 def test_each_variant_has_another_value_or_another_albedo(row):
-    """The test covers all variants of a node, including OSL's BSDL and Cycles."""
+    """The test covers all variants of a node, including variants of OSL's BSDL and of Cycles."""
     wo, wi, values = WO, WO[::-1], inputs(row)
     others = (each.get(row.name, ()) for each in RENDERERS)
     for variant in chain(row.variants, *others):

@@ -29,7 +29,7 @@ INSIDE |= {"thinfilm_ior": (1.2, 1.9), "exponent": (2.0, 6.0), "coat_ior": (1.2,
 INSIDE |= dict.fromkeys(hair.ROUGHNESSES, (0.1, 0.6))
 ENDS = {"ior": (0.0, 1.0, 0.5, 2.0, 1.0), "extinction": (0.0, 3.0), "exponent": (1.0, 5.0)}
 ENDS |= {"thinfilm_thickness": (1.0, 900.0)}  # a thickness of 0 has a different formula
-# Least values that float32 can represent inside the range.
+# Smallest values inside the ranges that float32 can represent.
 ENDS |= {"radius": (1e-30, 1.0), **dict.fromkeys(hair.ROUGHNESSES, (1.01e-12, 1.0))}
 FUNCTIONS = [
     (name, function)
@@ -147,7 +147,7 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
         value_there, slopes = gradients(given_there, inputs_there, no_nan(torch))
         plain = numbers(model(*given_there, **inputs_there))
         assert all(np.isfinite(each).all() for each in (value_there, plain, *slopes.values()))
-    # vmap over the rows returns the same values.
+    # vmap over the rows returns the same values as a call with all rows.
     if given and not any(map(one_for_all, row.parameters)):
         arrays = [torch.tensor(each) for each in (*given, *inputs.values())]
         count = len(given)

@@ -133,7 +133,7 @@ ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
 def errors(*regions, samples="a", **changes):
-    """Error fields of a result for all samples and for each region: ALL with the given changes."""
+    """Error fields of a result, which are ALL with the given changes, in total and by region."""
     whole, *parts = ({**changes}, *regions)
     found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
     return {"errors": found, "samples": samples}

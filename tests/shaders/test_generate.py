@@ -113,7 +113,7 @@ def test_our_nodes_compile_together_with_every_bsdf_node_of_pbrlib(target, tmp_p
 
 
 def translated(source, language, folder):
-    """Error output of the tools that translate a pixel stage or compile the HLSL, otherwise ""."""
+    """Error output of the tools that translate a pixel stage or compile HLSL; empty on success."""
     compiler, translator = program("glslangValidator"), program("spirv-cross")
     glsl, module, text = (folder / f"pixel.{suffix}" for suffix in ("frag", "spv", language))
     glsl.write_text(source, encoding="utf-8")
@@ -167,7 +167,7 @@ def test_no_source_has(wrong):
     assert [name for name, text in texts.items() if re.search(wrong, text)] == []
 
 
-# Names of functions, structures, macros and global variables in a source.
+# Names of functions, structures, macros and global variables in source code.
 NAMES = r"(?m)^(?:closure )?(?:#define |struct |\w+ (?=\w+(?:\(|;|\[|$)))(\w+)"
 
 

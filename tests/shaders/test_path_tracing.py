@@ -28,8 +28,8 @@ COLOR = {"color": (0.8, 0.4, 0.2)}
 ROUGH, DARK = {"roughness": (0.5, 0.3)}, (0.1, 0.05, 0.02)
 FIBER = {"roughness_R": (0.3, 0.4), "roughness_TT": (0.1, 0.3), "roughness_TRT": (0.5, 0.6)}
 FIBER |= {"cuticle_angle": 0.7, "absorption_coefficient": (0.1, 0.3, 0.5)}
-# Nodes of every kind, including films, retroreflection and an index of refraction below 1, for
-# which `mxeon check` does not test samples.
+# Nodes of every kind. `mxeon check` tests no samples of films, of retroreflection, or of an index
+# of refraction below 1.
 NODES = {
     "diffuse": ("oren_nayar_diffuse_bsdf", COLOR | {"roughness": 0.7, "energy_compensation": True}),
     "zeltner": ("sheen_bsdf", COLOR | {"roughness": 0.4, "mode": "zeltner"}),

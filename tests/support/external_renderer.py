@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An external renderer: renders a kit with Blender's Cycles, using only the kit's files.
+"""Renders a kit with Blender's Cycles, as an external renderer that uses only the kit's files.
 
     PYTHON_WITH_BPY external_renderer.py KIT OSL_FOLDER SAMPLES
 

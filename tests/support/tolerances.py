@@ -6,7 +6,7 @@ from math import pi
 # Unit roundoff of float64 and float32.
 ROUNDING, ROUNDING_32 = 2.0**-53, 2.0**-24
 
-# Roundings counted for one call of a NumPy function, because vectorized functions have errors of up
+# A call of a NumPy function counts as 8 roundings, because vectorized functions have errors of up
 # to 4 ulp.
 FUNCTION = 8
 
@@ -22,8 +22,8 @@ BRDF = (60 + 4 * FUNCTION) * ROUNDING
 LOSS = (7 + FUNCTION) * ROUNDING
 
 # Absolute difference between a closed-form albedo <= 1.05 and its quadrature by 128 x 128 terms.
-# Each term has 20 roundings, partial sums have 130, and each of 64 nodes and weights has an error
-# of 1e-14.
+# Each term has 20 roundings, partial sums have 130 roundings, and each of 64 nodes and weights has
+# an error of 1e-14.
 QUADRATURE = (20 + 130) * ROUNDING * 1.05 + 64 * 1e-14
 
 # Relative error of one rounding, for a number in [1/2, 1].
@@ -94,7 +94,7 @@ CYCLES_SUBSURFACE = 0.011 + 2 * 0.05 / 208**0.5
 
 # --- sampling and inversion, float64 ---------------------------------------------------------
 
-# Relative difference between a density and an equivalent product or sum.
+# Relative difference between a density and a product or sum with the same exact value.
 PDF = 20.0 * ROUNDING
 
 # Absolute error of the components and of the squared length of a sampled direction. Each component
@@ -204,9 +204,9 @@ REVERSED = 5e-5
 # Relative error of a BTDF: 64 roundings, which D may amplify by 1 / alpha, where alpha is 0.3.
 MITSUBA_BTDF = 64 * ROUNDING_32 / 0.3
 
-# Errors of EON, FON and QON. MITSUBA_EVAL is the error of the value times cosine, which is at most
-# 1 / pi and has about 15 roundings. MITSUBA_WEIGHT is the error of a sample's weight, a quotient
-# of two such values.
+# Errors of EON, FON and QON. MITSUBA_EVAL is the error of a value times the cosine. The product is
+# at most 1 / pi and has about 15 roundings. MITSUBA_WEIGHT is the error of a sample's weight, a
+# quotient of two such values.
 MITSUBA_EVAL = 3e-7
 MITSUBA_WEIGHT = 1e-6
 # Relative error of a dielectric over EON, where this error exceeds MITSUBA_EVAL. The facets'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of eonlib and of MaterialX's libraries in which one text is wrong."""
+"""Copies of eonlib and of MaterialX's libraries with one mistake each."""
 
 import re
 import shutil
@@ -43,7 +43,7 @@ def copy_of_stock(folder, *parts):
 
 
 def wrong_stock(folder, file, *changes):
-    """Path of a library that contains only one file of MaterialX's, with texts replaced."""
+    """Path of a library with a single file of MaterialX, in which texts are replaced."""
     copy_of_stock(folder, file)
     for old, new in changes:
         replace_text(folder, old, new, file)
