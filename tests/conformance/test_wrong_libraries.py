@@ -5,6 +5,7 @@ import pytest
 
 from mxeon import check
 from mxeon.cli.answer import answer
+from mxeon.conformance.run import texts_not_run
 from mxeon.conformance.run.plan import make_plan
 from mxeon.shaders.library import read_library
 from mxeon.shaders.methods import Methods
@@ -325,6 +326,7 @@ def test_a_requested_node_of_a_folder_is_compared_with_the_release(
     assert (result.verdict == FAILED) == wrong and result.control.caught
     assert not wrong or has(result, "release", words, *values)
     assert dict(run.unjudged) == {"osl": "no host for it ran"}
+    assert dict(texts_not_run({"osl"}, {"genosl", "genglsl"})) == {"glsl": "no host for it ran"}
 
 
 def test_texts_are_judged_after_the_release_was_loaded_anew(judged, tmp_path):

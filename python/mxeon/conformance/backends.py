@@ -106,7 +106,7 @@ class Backend(ABC):
             return self.host.compile(text, library=self.library)[0]
         shader = implementation(self.host, text, self.library)
         if shader is None:
-            raise NotRun(f"{self.host.target}: no implementation of {self.spec.node}")
+            raise NotRun(f"{self.host.target}: no implementation of {self.spec.title}")
         return shader
 
     def precision(self, quantity: str) -> tuple[Term, ...]:

@@ -231,8 +231,8 @@ def to_run(planned: Plan, findings: Mapping[int, Findings]) -> Run:
         places.setdefault(text, []).extend([] if place in text else [place])
     hosts = tuple(dict.fromkeys(host for each in done for host in each.hosts))
     audited = any(task.check == SOURCE for task in planned.tasks)
-    own = (file for files in planned.libraries.values() for file in files["folder"])
-    written = set() if planned.contents else {part for file in own for part in file.split("/")}
+    own = planned.libraries.values() if hosts and not planned.contents else ()
+    written = {part for files in own for file in files["folder"] for part in file.split("/")}
     unjudged = (
         *texts_not_run({host.name for host in hosts}, None if audited else written),
         *planned.unjudged,
@@ -270,6 +270,8 @@ def texts_not_run(
         named = written is None or (folder in written and folder not in folders)
         if row.target not in targets and named:
             targets.add(row.target)
+            if written is not None:
+                folders.add(folder)  # its first target stands for all
             yield row.target, f"needs {row.needs}" if row.needs else "no host for it ran"
 
 
