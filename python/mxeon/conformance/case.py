@@ -52,7 +52,7 @@ class Case:
     inputs: Callable[[Batch], Batch] = lambda batch: batch
     outputs: Change = lambda batch, values: values
     throughputs: Change = lambda batch, values: values
-    control: bool = False  # negative controls use few samples, because one failure is enough
+    control: bool = False  # whether the case is a negative control, which needs few samples
     chosen: tuple[Batch, ...] = ()  # batches that replace the samples in a diagnosis
     explained: dict[object, results.Diagnosis] = field(default_factory=dict, init=False)  # cache
 

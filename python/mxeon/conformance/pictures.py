@@ -213,7 +213,6 @@ def judge_document(
 
 
 def _scenes(host: Host) -> tuple[Scene, ...]:
-    """Scenes that a host can light. Some hosts have no environment light."""
     scenes = host_row(host.name).scenes
     if host.active.environment == "none":
         scenes = tuple(each for each in scenes if each.environment is None)

@@ -356,7 +356,6 @@ class Comparison:
         raise NotRun("its code is not MaterialX's, and no check evaluates it")
 
     def _value_error(self, own: Subject, released: Subject) -> float:
-        """The largest difference of values. Raise NotRun if `released` cannot be evaluated."""
         try:
             expected = self._values(released)
         except (DocumentError, ShaderError) as error:
@@ -542,7 +541,7 @@ def check_release(
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
     """The result of comparing a library with the installed release, and the subjects not judged.
 
-    If `nodes` are given, only their definitions, graphs and texts are compared.
+    If `nodes` are given, only their definitions, graphs and source code are compared.
     """
     release = released(library)
     if release is None:

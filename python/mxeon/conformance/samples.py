@@ -49,7 +49,7 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """Counts reduced by up to 1/8, depending on the seed. Shaders may expect fixed counts."""
+        """Counts reduced by up to 1/8, depending on the seed, so that no shader can expect them."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -126,7 +126,7 @@ class Candidate:
     title: str
     values: Callable[[Batch], Array]
     permitted: bool = False  # whether the specification permits the function
-    anisotropic: bool = False  # whether the function only differs for two different alphas
+    anisotropic: bool = False  # whether the function equals the model if both alphas are equal
 
 
 def generator() -> Rng:
@@ -158,7 +158,7 @@ ABOVE_ONE = 1.0 + 2.0**-23  # cosine of equal unit vectors after one upward floa
 HORIZON = 0.1  # smallest cosine of a direction if the other direction is on or below the horizon
 POLE = 0.99  # largest |y| of normals in rotated frames, which excludes the poles of the sky map
 TURNED = (0.25, 0.95)  # cosines in rotated frames, away from 0 and 1, where roundings matter
-LEAST_SHEEN = 0.01  # smallest sheen roughness, because the Zeltner model clamps smaller values
+LEAST_SHEEN = 0.01  # smallest sheen roughness; the Zeltner model clamps smaller values
 LEAST_COLOR82 = 0.5  # smallest color82 of lobes with measured albedos; see docs/loading.md
 LEAST_TURNED = 0.1  # smallest roughness of microfacets in rotated frames
 WEIGHTS = (-0.5, 0.0, 1e-4, 0.01, 0.5)

@@ -40,12 +40,12 @@ class Input:
     # Whether random values are log-uniform. If not, a tenth of the values is at each end of the
     # range.
     logarithmic: bool = False
-    often: float | None = None  # value in half of the samples, for inputs that are rarely set
+    often: float | None = None  # value in half of the samples, if documents rarely set the input
     equal: bool = False  # whether the two components are equal in half of the samples
     # Values of the input in two materials that represent a node in pictures; () for the default.
     materials: tuple[ArrayLike, ...] = ()
     variable: str = ""  # shader variable from which the default value is read; "" for none
-    default: ArrayLike = 1.0  # value in documents that must set the input
+    default: ArrayLike = 1.0  # value that a document sets if a value is required
     beyond: tuple[float, ...] = ()  # values outside of [low, high] that checks also use
     ends: tuple[float, float] = (-np.inf, np.inf)  # range to which the node clamps the input
 

@@ -376,7 +376,7 @@ def _cure(cause: Cause) -> str:
 
 
 def _filled(text: str, cause: Cause) -> str:
-    """The text, with a cause's names and numbers in place of the braces."""
+    """The sentence, with a cause's names and numbers in place of the braces."""
     names, values = cause.names, cause.values
     first = values[0] if values else math.nan
     known = (name for name, x in FACTORS.items() if abs(first / x - 1.0) <= SAME_FACTOR)
@@ -434,7 +434,7 @@ SENTENCES: Mapping[Kind, Callable[[Cause], str]] = {
     Kind.UNKNOWN: lambda cause: DEFECTS[cause.key],
     Kind.TEXT: lambda cause: cause.text,
     Kind.CONTROL: lambda cause: "inconclusive: the deliberately wrong control passed too",
-    # The result's reason already explains causes of these three kinds.
+    # The result's reason already explains causes of the kinds NONE, FOLLOWS and INPUT.
     **dict.fromkeys((Kind.NONE, Kind.FOLLOWS, Kind.INPUT), lambda cause: ""),
 }
 

@@ -59,7 +59,7 @@ SCATTERED = """if (what < 0.5)
     if (!kept)
         return vec3(0.0);
     return what < 2.5 ? wi : what < 3.5 ? weight : vec3(pdf);"""
-# SCATTERED does not include this code, because drivers inline the whole material at each call.
+# PASSED is separate from SCATTERED, because drivers inline the whole material at each call.
 PASSED = "return what < 5.5 ? vec3(material_shadow(p, wo)) : material_emitted(p, wo);"
 RANDOM = "return path_random(uvec4(uvec3(u), 7u)).xyz;"
 # GLSL code for each named value. The argument `what` of CALL is the position of the name in
@@ -78,10 +78,10 @@ VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 # may be 0 where the exact albedo is 3e-6.
 LEAST_LIGHT = 1e-5
 LEAST_DRAWN = 1e-5  # ratio of density to value up to which light counts as never sampled
-# Sample weight (an albedo) below which the probabilities of lobes have few correct digits, because
-# a sheen's fitted albedo crosses 0.
+# Smallest judged sample weight, which is an albedo. For smaller weights, probabilities of lobes
+# have few correct digits, because a sheen's fitted albedo crosses 0.
 LEAST_ALBEDO = 1e-3
-LEAST_COUNTED = 0.2  # smallest roughness if samples are counted, because the cells are coarse
+LEAST_COUNTED = 0.2  # smallest roughness if samples are counted; the counting cells are coarse
 # GLSL expressions that convert a parameter of type float or vec3 to the type of an input.
 CONVERTED = {"boolean": "{} > 0.5", "integer": "int({})", "vector2": "{}.xy"}
 VECTORS = ("vector2", "vector3", "color3")
@@ -242,7 +242,7 @@ def is_shader(spec: Spec) -> bool:
 
 
 def random_materials(case: Case) -> tuple[Paths, Batch]:
-    """Random materials of a node whose normal and tangent inputs differ from the surface's."""
+    """Random materials with a normal and a tangent that differ from those of the surface."""
     spec, batch = case.lobe, case.backend.turned
     rng, count = generator(), len(batch.wo)
     frame: Values = {each.name: NORMAL for each in spec.inputs if each.type == "vector3"}
@@ -532,8 +532,8 @@ def path_albedo(case: Case) -> Iterator[Compared]:
 # standard deviations for 2^15 samples, and three standard deviations for half as many samples.
 CELLS = 16  # divisions of the angle and of the azimuth
 ORDERS = 4, 8, 16, 32, 64, 128  # quadrature nodes per axis of a patch
-# Attempts to show that samples follow a density, from cheap to accurate. Each row has a number of
-# samples, numbers of quadrature nodes, and the score up to which no further attempt is needed.
+# Tests whether samples follow a density, from cheap to accurate. Each row has a number of samples,
+# numbers of quadrature nodes, and the score up to which no further test is needed.
 LOOKS = (
     (DRAWS // 2, ORDERS[:1], 2.0),
     (DRAWS // 2, ORDERS[:4], 2.0),

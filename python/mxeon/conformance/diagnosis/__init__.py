@@ -273,7 +273,7 @@ class Comparison:
 
     quantity: str  # name of the quantity in a spec's tolerances
     compared: Measure
-    candidates: Callable[[Case], Sequence[Candidate]]  # the first is the node's own model
+    candidates: Callable[[Case], Sequence[Candidate]]  # the first candidate is the node's model
     faults: Sequence[Fault] = ()  # faults to combine with the node's own model
 
     def __call__(self, case: Case) -> Iterable[Compared]:
@@ -295,7 +295,6 @@ def _backs(case: Case) -> Iterator[Compared]:
 
 
 def _rescaled_candidates(case: Case) -> Sequence[Candidate]:
-    """Candidates for values, rescaled so that one tolerance suits all pairs."""
 
     def rescaled(candidate: Candidate, batch: Batch) -> Array:
         values = candidate.values(batch)

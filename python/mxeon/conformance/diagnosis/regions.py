@@ -33,8 +33,8 @@ CLEARER = 0.5  # factor for RIGHT and WEAK if a range is limited at both ends
 CHANCE = 12.0  # smallest log odds against finding a range by chance
 LARGEST = 0.6  # largest share of all pairs or values that a reported region may contain
 DENSITY = 0.1  # smallest share of wrong pairs in a region
-# Largest tangent of the angle between the normal and a half vector that counts as upright. In
-# float32, the cosine of such an angle rounds to about 1.
+# A half vector is upright if the tangent of the angle to the normal is at most 1e-3. In float32,
+# the cosine of such an angle rounds to about 1.
 UPRIGHT = 1e-3
 COSINES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 

@@ -26,7 +26,7 @@ from mxeon.shaders.scene import VIEW, Scene, sphere, tangents
 # Size of a picture that shows a pattern node, and maximum number of pattern nodes that are drawn to
 # find a wrong node.
 PATTERN_SIZE, PATTERNS_DRAWN = 32, 16
-# Smallest reported error of a pattern node, above errors of texture filters and powers.
+# Smallest reported error of a pattern node. Errors of texture filters and pow() are smaller.
 PATTERN_ERROR = 0.01
 LATTICE = 32  # number of judged rows and columns in a picture with more than MOST materials
 MOST = 2000  # maximum number of integrals, each of which takes a millisecond

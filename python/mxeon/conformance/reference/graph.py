@@ -55,7 +55,7 @@ class Graph(Nodes):
         document: mx.Document,
         points: ShadingPoints,
         inputs: Mapping[str, ArrayLike] | None = None,  # values that replace document values
-        emits: bool = True,  # whether emission and opacity count
+        emits: bool = True,  # whether values include emission and opacity
         measure: Measure | None = None,  # values of unsupported nodes, or None to raise NotRun
     ) -> None:
         super().__init__()
@@ -214,7 +214,7 @@ class Graph(Nodes):
         return self._connected(path[:-1], port, label)
 
     def _replaced(self, path: Path, name: str) -> Array | None:
-        """Value of an input that the caller replaces, (N, 1) for a number, or None."""
+        """The caller's replacement for an input's value, (N, 1) for a number, or None."""
         lobe = path in self.elements and self.elements[path].getCategory() in LOBES
         if name not in self._inputs or not (path == self._shader if self._shader else lobe):
             return None

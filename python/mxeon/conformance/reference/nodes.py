@@ -205,7 +205,7 @@ class ShadingPoints:
         return value
 
     def _albedo(self, albedo: Albedo, node: PbrNode, wo: Array, inputs: Inputs) -> Array:
-        """Albedo at each view, from integrals or, if a picture has one material, from a series."""
+        """Albedo at each view, integrated or, if a picture has one material, from a series."""
         closed = not node.fitted and node.integral is None
         varied = any(len(value) > 1 for value in inputs.values())
         if varied and not closed and len(wo) > self.most:

@@ -152,7 +152,7 @@ def _rows(table: Table) -> tuple[Row, ...]:
 
 # Hosts that use their own closures with every library.
 OWN_CLOSURES = tuple(row.name for row in hosts.HOSTS if row.way == "functions")
-REPAIRED = 30.0  # errors smaller than the issue's error by this factor are not explained
+REPAIRED = 30.0  # an issue does not explain an error that is this many times smaller
 SPREAD = 1.5  # largest ratio of an error to the error that another system measured for the issue
 
 
@@ -161,7 +161,7 @@ def issues_of(result: Result) -> tuple[Issue, ...]:
 
 
 def blamed(result: Result) -> list[set[str]]:
-    """Lobes that make a combination fail, in one set per page or cause, or [] for a single lobe."""
+    """Lobes that make a combination fail, one set per page or cause; [] if a lobe itself fails."""
     if not result.document and _is_lobe(result.subject):
         return []
     if found := issues_of(result):

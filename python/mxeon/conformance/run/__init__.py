@@ -190,15 +190,14 @@ def read_run(folder: AnyPath) -> Run:
 def work(policy: Policy, rows: Sequence[Row], task: Task) -> Findings:
     """The findings of a task in a worker.
 
-    The worker first registers the renderers in `rows`. Raise NotRun if the host cannot be opened
-    here.
+    The worker first registers the renderers in `rows`. Raise NotRun if the host cannot be opened.
     """
     register(*rows)
     return _judge(policy).work(task)
 
 
 def work_or_not_run(work: Callable[[Task], Findings], task: Task) -> Findings:
-    """The findings of a task, or a result "not run" if the host cannot be opened here."""
+    """The findings of a task, or a result "not run" if the host cannot be opened."""
     try:
         return work(task)
     except NotRun as reason:

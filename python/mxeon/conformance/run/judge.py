@@ -62,7 +62,7 @@ class Judge:
     def work(self, task: Task) -> Findings:
         """The findings of a task, including the faults of a document that cannot be read.
 
-        Raise NotRun if the host cannot be opened here.
+        Raise NotRun if the host cannot be opened.
         """
         SEED.set(task.seed)
         begin = time.monotonic()
@@ -87,7 +87,6 @@ class Judge:
                 host.close()
 
     def _host(self, name: str) -> base.Engine:
-        """The host called `name`, which is opened at the first call."""
         if name not in self._hosts:
             try:
                 self._hosts[name] = self._open(name)

@@ -137,7 +137,7 @@ def _nodes(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Each spec with its node in the judged mode, except specs that only users can request."""
+    """Each spec, and its node in the judged mode, without specs that only users can request."""
     specs = (spec for spec in ALL_SPECS if spec not in surface_texts.SENTENCES)
     return tuple((spec, node_of(spec.document(), spec.node)) for spec in specs)
 
@@ -174,7 +174,7 @@ class Plan(Scope):
     """All tasks of a run and all data that findings depend on. Equal plans have equal findings."""
 
     tasks: tuple[Task, ...]
-    # Values of the options of `mxeon check` for policy, seed and lighting methods.
+    # Options of `mxeon check` that set the policy, the seed and the lighting methods.
     options: dict[str, str] = field(default_factory=dict)
     # SHA-256 of each file that the findings depend on, or "" for a file that cannot be read. Plans
     # of runs without a journal contain no files.

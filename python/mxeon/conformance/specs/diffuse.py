@@ -75,7 +75,7 @@ def inputs_of(*names: str) -> tuple[Input, ...]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiffuseModelSpec(ScatteringSpec):
-    """A node or a lobe with a rough diffuse model. The default is a node defined by a renderer."""
+    """A rough diffuse model in a renderer's node or, in subclasses, in other nodes and lobes."""
 
     requires = Ability.OWN
 
@@ -203,7 +203,7 @@ class SurfaceLobe(DiffuseModelSpec):
 
 
 # fmt: off
-# Node, mode, specified model, names of the inputs for color and roughness, and additional inputs.
+# Rows: node, mode, specified model, names of the color and roughness inputs, additional inputs.
 ROWS: tuple[tuple[str, str, str, tuple[str, ...], tuple[tuple[str, str, str], ...]], ...] = (
     ("open_pbr_surface", "", "eon", ("base_color", "base_diffuse_roughness"), ()),
     ("open_pbr_surface", "thin-walled", "eon", ("subsurface_color", "base_diffuse_roughness"),

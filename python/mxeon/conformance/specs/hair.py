@@ -182,7 +182,7 @@ class HairSpec(PbrSpec):
         return Batch(wo, wi, self.random_inputs(rng, len(wo), edged=True))
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames and wide lobes, because rounding displaces narrow lobes."""
+        """Pairs with individual frames. Lobes are wide, because rounding displaces narrow lobes."""
         batch = super().turned(counts)
         least = LEAST_TURNED**2, LEAST_TURNED
         wide = {name: np.maximum(batch.inputs[name], least) for name in ROUGHNESSES}

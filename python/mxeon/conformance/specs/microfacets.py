@@ -32,7 +32,7 @@ LEAST_INVERTED = 0.1  # smaller IORs of dielectrics are raised to 0.1 before inv
 LEAST_INDEX = 1.05  # smallest IOR above 1 in the domain of the fit by tools/fits/ggx_cosine.py
 COSINE_STEP = 2.0**-18  # largest difference between wo . wh and wi . wh
 RIM_COLOR = 0.05  # smallest |wo + wi| if all channels of color90 are below 0.05
-# Smallest alpha of lobes with rotated tangents, because errors of a tangent grow by 1 / alpha.
+# Smallest alpha of lobes with rotated tangents. Errors of a tangent grow by 1 / alpha.
 LEAST_TANGENT_ALPHA = 0.05
 LEAST_TANGENT_COSINE = 0.1  # smallest cosine of directions if tangents are rotated
 COSINES = np.linspace(0.0, 1.0, 65)  # cosines at which Fresnel curves are tested for values below 0
@@ -294,7 +294,7 @@ class FacetSpec(lobes.PbrSpec):
         return np.asarray(self.single(pairs) * weight[:, np.newaxis])
 
     def turned(self, counts: Counts) -> Batch:
-        """Pairs with individual frames and rough lobes, because rounding displaces sharp lobes."""
+        """Pairs with individual frames. Lobes are rough, because rounding displaces sharp lobes."""
         batch = super().turned(counts)
         rough = np.maximum(batch.inputs["roughness"], samples.LEAST_TURNED)
         return denser(batch.altered(roughness=rough))
@@ -571,7 +571,7 @@ ORDERED = Films(1 << 10, (1e-3, 1e-3), (0.1, 0.2), (40.0, 100.0))
 FILM_COUNTS = Counts(1 << 8, 1 << 6, diagnosed=1 << 5, albedos=24, materials=16)
 LEAST_OIL = 1.2  # smallest IOR of films with a visible effect
 LEAST_FILM = 1.25  # smallest IOR of films in albedo checks; below 1.25, metals may reflect totally
-LEAST_FACET = 0.1  # smallest cosine to the half vector, because grazing light needs all orders
+LEAST_FACET = 0.1  # smallest cosine to the half vector; smaller cosines need all orders
 THICK = (0.0, 1.0, 100.0, 1e4)  # film thicknesses at the edges of the domain, in nm
 
 
@@ -672,7 +672,7 @@ def film_views(node: lobes.PbrSpec, films: Films) -> Batch:
 
 
 def _steep(batch: Batch) -> np.ndarray:
-    """Mask of pairs whose view is not nearly perpendicular to the half vector."""
+    """Mask of pairs whose half vector has a cosine of at least LEAST_FACET to the view."""
     half = batch.wo + batch.wi
     length = np.linalg.norm(half, axis=1)
     cosine = np.abs((half * batch.wo).sum(axis=1)) / np.maximum(length, 1e-12)
