@@ -56,7 +56,7 @@ def wrong(largest, scene="back"):
 SEEN = wrong(-0.05)
 ZERO = Region("index_zero")
 LOAD, NOTHING = "To fix it, load ", "Nothing to do for this material"
-RIGHT = "the picture is right; the material's nodes are wrong"
+RIGHT = "the picture is right; the material's nodes are wrong for"
 WITHIN = "up to 6.2 % of white too dark in light from behind, visible on 25 % of its pixels, within this check's"
 CLOSE = {"difference": wrong(-0.0621)["difference"]}
 FAR = 'input "a/roughness" must lie in [0, 1]; got 1.7'
@@ -67,9 +67,10 @@ FIRST = f"0.37 (value)\ncause: gl with stock: {EON} "
 # Each row has failed results with stock MaterialX, fields of the picture's result, an expected text
 # in the summary, and the last line of the summary.
 ANSWERS = (
-    ((stock(),), {}, f"{RIGHT}.", NOTHING),
-    ((BENT,), {}, f"{RIGHT} for inputs that this material does not use.", NOTHING),
+    ((stock(),), {}, f"{RIGHT} other inputs.", NOTHING),
+    ((BENT,), {}, f"{RIGHT} inputs that this material does not use.", NOTHING),
     ((stock(),), {}, "wrong for other inputs, 0.37 (value)", NOTHING),
+    ((stock(key="finite"),), {}, f"{RIGHT} other inputs.", NOTHING),
     ((stock(),), CLOSE, WITHIN, LOAD),
     ((stock(),), CLOSE, "  wrong, 0.37 (value)", LOAD),
     ((LAYER, stock(diagnosis=quoted("Y"))), wrong(-0.1), f"{FIRST}(value)", LOAD),

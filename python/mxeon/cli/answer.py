@@ -230,7 +230,7 @@ def _is_refused(run: Run, document: str, library: str) -> bool:
 
 def _materials(run: Run) -> Iterator[Line]:
     """Sentences about materials, worst first. Materials with the same look share a sentence."""
-    hosts = {each.host for each in run.results if each.check in PICTURE_CHECKS}
+    hosts = {each.host for each in run.results if _shows_a_document(each)}
     # Name, sentence, rank and verdict of each material on each host.
     rows: list[tuple[str, str, int, Verdict | None]] = []
     same_name = Counter(Path(each).name for each in run.contents)
@@ -287,8 +287,8 @@ def _look(run: Run, document: str, result: Result) -> str:
     ]
     if not (unused and _is_right(result)):
         return words.look(result)
-    inputs = " for inputs that this material does not use" if all(unused) else ""
-    return f"the picture is right; the material's nodes are wrong{inputs}"
+    inputs = "inputs that this material does not use" if all(unused) else "other inputs"
+    return f"the picture is right; the material's nodes are wrong for {inputs}"
 
 
 def _is_visible(result: Result) -> bool:
@@ -299,6 +299,11 @@ def _is_visible(result: Result) -> bool:
 def _is_right(result: Result) -> bool:
     """Whether a picture was compared with a reference and has no visible difference."""
     return result.check == "picture" and result.verdict == PASSED and not _is_visible(result)
+
+
+def _shows_a_document(result: Result) -> bool:
+    """Whether a result is about a document; a node also has a check called `finite`."""
+    return result.check in PICTURE_CHECKS and bool(result.document)
 
 
 def _is_picture(result: Result, document: str) -> bool:
@@ -405,7 +410,7 @@ def _remedy(run: Run) -> Iterator[str]:
     """The remedy for the documents, if known: correct an input, load eonlib, or do nothing."""
     if not run.contents:
         return
-    pictures = [each for each in run.results if each.check in PICTURE_CHECKS]
+    pictures = [each for each in run.results if _shows_a_document(each)]
     causes = [each.diagnosis.first for each in pictures]
     if inputs := _unique(f'input "{c.names[0]}"' for c in causes if c.kind is Kind.INPUT):
         yield f"To fix it, correct {listed(inputs)}"
@@ -417,12 +422,11 @@ def _remedy(run: Run) -> Iterator[str]:
     wrong = {each.library for each in pictures if _is_visible(each)} | {
         each.library
         for each in failed
-        if each.check in PICTURE_CHECKS
-        or (each.library not in compared and not run.is_elsewhere(each))
+        if _shows_a_document(each) or (each.library not in compared and not run.is_elsewhere(each))
     }
     libraries = {each.library for each in run.results}
     # eonlib has none of the defects that have a page in docs/upstream, except unavoidable defects.
-    nodes = [issues_of(each) for each in failed if each.check not in PICTURE_CHECKS]
+    nodes = [issues_of(each) for each in failed if not _shows_a_document(each)]
     known = all(issues and not any(each.unavoidable for each in issues) for issues in nodes)
     if "stock" in wrong and (
         "eonlib" in libraries - wrong or (known and "eonlib" not in libraries)
