@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests of mxeon. BLAS and PyTorch use one thread per pytest process, because idle threads use CPUs."""
+"""Tests of mxeon. BLAS and PyTorch use a single thread per process, because idle threads spin."""
 
 import os
 

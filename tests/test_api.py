@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python API: arguments with names and paths, summaries of runs, and the documented example."""
+"""The Python API accepts names and paths, summarizes runs, and runs the documented example."""
 
 import pickle
 import re
@@ -198,7 +198,7 @@ MISTAKES = {
 
 @pytest.mark.whole
 def test_a_type_checker_passes_the_gate_and_finds_mistakes_in_it(tmp_path):
-    """mypy checks the example like a user's file: strictly, without the checkout's settings."""
+    """mypy checks the example strictly and without the checkout's settings, like a user's file."""
     wrong = GATE
     for right, (mistake, _) in MISTAKES.items():
         wrong = wrong.replace(right, mistake)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fits of measured BRDFs: errors of the fitted parameters, MERL files, and refused inputs."""
+"""Fits of measured BRDFs state the errors of parameters, read MERL files, and refuse bad inputs."""
 
 import re
 import runpy

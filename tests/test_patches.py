@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each patch for an upstream repository belongs to a page of docs/upstream, and applies."""
+"""Each patch for an upstream repository belongs to a page of docs/upstream, and applies cleanly."""
 
 import json
 import re

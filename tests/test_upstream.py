@@ -81,7 +81,7 @@ def same_record(found, written):
 
 
 def _parted(record):
-    """Split a record into figures and other fields, except the place of the measurement."""
+    """Split a record into figures and other fields, without the place of the measurement."""
     rows = [[check, subject, *rest] for check, subject, _, *rest in record["rows"]]
     return [float(row[2]) for row in record["rows"]], (rows, record["cause"], record.get("next"))
 

@@ -29,7 +29,7 @@ MIRROR = material(lobe("generalized_schlick_bsdf", roughness=(0.0, 0.0)))
 
 
 def pattern(line):
-    """Regular expression for a printed line; files, errors and numbers of checks may vary."""
+    """Regular expression for a printed line, in which files, errors and numbers may vary."""
     rest = r"\.\.\.|(?<=load )\w+|(?<=: )docs|(?<=EON, )[\d.e-]+|(?= To fix)|\s{2,}|\d+(?= checks| of )|(?<= of )\d+"
     return ".*".join(map(re.escape, re.split(rest, line)))
 

@@ -73,7 +73,7 @@ def repaired(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.mark.parametrize("spec", SENTENCES)
 def test_patched_graphs_do_what_their_texts_say(spec: SentenceSpec, repaired: str):
-    """A patched graph computes the specified formula or a formula that the specification permits."""
+    """Patched graphs compute the specified formula, or a formula that the specification permits."""
     [batch] = spec.batches(Counts())
     own, *others = spec.value_candidates
     forms = [each for each in others if each.permitted]

@@ -83,7 +83,7 @@ def state(page):
 
 
 def shows(page, **fields):
-    """Wait until the view has the given fields, and fail if that never happens."""
+    """Wait until the view has the given fields, and fail after a time limit."""
     try:
         until(page, HAS, fields)
     except AssertionError:

@@ -110,7 +110,7 @@ def _command(rng):
     return tuple(arguments)
 
 
-# Files beside the working folder, which no case may read.
+# Files outside the working folder. No case may read these files.
 SECRET = f'<materialx version="1.39"><constant name="{CANARY}" type="float"/></materialx>'
 AROUND = (
     ("secret.mtlx", SECRET),

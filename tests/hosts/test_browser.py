@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renderers from npm in a browser: pictures, models, and repairs of known defects."""
+"""Renderers from npm match the models in a browser, once known defects are repaired."""
 
 import pytest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's Cycles as a host: exact values and pixels, EON, failures, and Cycles' own nodes."""
+"""Blender's Cycles as a host returns exact values and pixels, and reports failures."""
 
 import os
 import sys

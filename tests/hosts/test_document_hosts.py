@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Storm and MaterialX's renderer: models from all sides, known defects, and failures."""
+"""Storm and MaterialX's renderer match the models, show known defects, and report failures."""
 
 import shutil
 from dataclasses import replace

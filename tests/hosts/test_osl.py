@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OSL as a host: closure trees, the profile for Cycles, and messages of compiler and engine."""
+"""The OSL host evaluates closure trees, supports the profile for Cycles, and reports errors."""
 
 import re
 from dataclasses import replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of the path tracer have known values, on the sphere and the shader ball."""
+"""The path tracer's pictures of the sphere and of the shader ball have known values."""
 
 from dataclasses import replace
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Kits: files, damaged pictures, verdicts, and Cycles as an external renderer."""
+"""Kits have the right files and verdicts, reveal damaged pictures, and work with Cycles."""
 
 import json
 import re

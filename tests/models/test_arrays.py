@@ -300,7 +300,7 @@ CASES = [(make, name) for make, name in CASES if make is pytorch or not name.end
 
 @pytest.mark.parametrize(("make", "name"), CASES)
 def test_gradients_are_finite_and_those_of_differences(make, name):
-    # The tests with PyTorch cover the same lines, so lines are not traced for JAX.
+    # JAX runs the same lines of the models as PyTorch, so lines are traced only for PyTorch.
     with untraced() if make is jax else nullcontext():
         assert_gradients(make(), name, False)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`mxeon.model`: inputs as in MaterialX, shapes, functions and messages of every model."""
+"""`mxeon.model` takes MaterialX's inputs, and returns the right functions, shapes and messages."""
 
 import re
 

@@ -145,7 +145,7 @@ def test_mitsuba_has_the_values_of_the_model(tilt):
 
 @pytest.mark.parametrize("theta", [0.0, 0.7, -1.3])
 def test_a_tilted_lobe_has_the_light_of_its_limits(theta):
-    """M_p is a delta function at variance 0 and 1/2 at infinite variance; half a turn mirrors it."""
+    """M_p is a delta function at variance 0, and is 1/2 at infinite variance."""
     view, _ = section(np.array([np.sin(theta), 0.0, np.cos(theta)]), np.array(1.55))
 
     def share(v, tilt):

@@ -46,7 +46,7 @@ def inputs(row, count=COUNT):
         if name == "thinfilm_thickness":
             values[name] = 500.0 * values[name]
         if name in ROUGHNESS and row.name in NESTED:
-            # Rough lobes, so that the albedo of the sum exceeds 1.
+            # The lobes are rough, so the albedo of the sum exceeds 1.
             values[name] = 0.9 + 0.1 * rng.random(count)
         if name == "roughness" and row in MICROFACET_NODES + FILM_NODES:
             values[name] = np.repeat(0.4 + 0.5 * rng.random((count, 1)), 2, axis=1)

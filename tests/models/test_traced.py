@@ -140,7 +140,7 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
     value, found = gradients(given, inputs)
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)
     assert_slopes(partial(model, *given), inputs, found)
-    # At the ends of the ranges, results are finite in both precisions. A warning by NumPy would fail the test.
+    # At the ends of the ranges, results are finite in both precisions, and NumPy does not warn.
     for (given_there, inputs_there), kind in product(at_ends(row, function), (float, np.float32)):
         given_there = [each.astype(kind) for each in given_there]
         inputs_there = {key: each.astype(kind) for key, each in inputs_there.items()}
@@ -173,7 +173,7 @@ def test_jax_traces_derivatives_of_every_function_of_a_model(name, function):
         model = partial(getattr(row, function), *given)
         return jax.jvp(lambda inputs: numbers(model(**inputs)).sum(), (inputs,), (inputs,))
 
-    with untraced():  # the tests with PyTorch cover the same lines
+    with untraced():  # JAX runs the same lines of the models as PyTorch
         found = jax.eval_shape(jax.vmap(change, in_axes=(0, axes)), given, inputs)
     assert [each.shape for each in found] == [(ROWS,)] * 2
 

@@ -143,7 +143,7 @@ ROUGH, SMOOTH = (Region("roughness", "value", **end) for end in ({"low": 0.5}, {
 HALVES = {"region": SMOOTH}, {"region": ROUGH}
 PAGE, TWO_PAGES = {"pages": ("a",)}, {"pages": ("a", "b")}
 PERMITTED = {"verdict": DIFFERS}
-SEED = {"samples": "b", "of": 900}  # fewer samples, drawn with another seed
+SEED = {"samples": "b", "of": 900}  # another seed, and fewer samples than in other results
 INVALID = {"error": math.inf, "tolerance": 0.0, "quantity": Quantity.VALUES}
 # Result before, result after, kind of the change, and part of the printed line.
 GATE = {

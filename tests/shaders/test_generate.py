@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generated shaders: all targets, all inputs, and the installed compilers."""
+"""Generated shaders of all targets have all inputs and compile with the installed compilers."""
 
 import json
 import os

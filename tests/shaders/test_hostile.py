@@ -34,7 +34,7 @@ FETCH = BOMB.replace('"ha"', 'SYSTEM "../secret.mtlx"')
 
 @pytest.fixture
 def home(tmp_path):
-    """Folder for a document. A link in the folder leads outside, where more files lie."""
+    """Folder for a document, with a link to files outside the folder."""
     folder = tmp_path / "documents"
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path)

@@ -2,7 +2,7 @@
 """Shaders for path tracers: values match the rasterizer, and densities match the samples.
 
 `mxeon check` judges every node by the checks `pdf`, `sample`, `path_value` and `path_inside`. These
-tests use more samples, and cover edge cases and surface shaders.
+tests use more samples than `mxeon check`, and cover edge cases and surface shaders.
 """
 
 import shutil

@@ -30,7 +30,7 @@ def output(*command, **options):
 
 
 def wait_for(condition, process):
-    """Wait until a condition holds, and fail if the process ends before that."""
+    """Wait until a condition holds, and fail if the process ends first."""
     end = time.monotonic() + DEADLINE
     while not condition():
         assert time.monotonic() < end
