@@ -211,6 +211,8 @@ GATE = {
     "found": ({"verdict": NOT_RUN, "reason": "timed out"}, {}, WORSE, "not run -> failed at 0.3"),
     "implied": ({"verdict": NOT_RUN, "diagnosis": caused("follows")}, {}, OTHER, "not run -> failed"),
     "caused": ({"verdict": PASSED, "error": 0.0}, {"diagnosis": quoted("no roughness")}, WORSE, "0.3; no roughness"),
+    "permitted": ({"verdict": PASSED, "error": 0.0}, {"verdict": DIFFERS, "diagnosis": quoted("no roughness")}, WORSE,
+                  "differs at 0.3; no roughness"),
     "uncaught": ({"verdict": PASSED}, {"error": 0.0, "control": Control("s clamped", 0.0, False)}, WORSE,
                  "failed at 0; the negative control is not caught: s clamped, 0"),
 }  # fmt: skip

@@ -382,7 +382,7 @@ def _change(old: Result, new: Result) -> tuple[str, str, tuple[Growth, ...]]:
     if old.verdict != new.verdict:
         worse = RANKS.index(new.verdict) > RANKS.index(old.verdict)
         reason = words.UNEXPLAINED if old.verdict == DIFFERS and worse else ""
-        if old.verdict == PASSED and new.verdict == FAILED:
+        if old.verdict == PASSED and worse:
             # If the error is within the tolerance, the check's negative control passed too.
             reason = words.excess(new) if new.within else words.diagnosis(new.diagnosis)
         return WORSE if worse else BETTER, reason, grown if worse else fallen
