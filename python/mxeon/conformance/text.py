@@ -19,16 +19,7 @@ from numpy.typing import ArrayLike
 from mxeon import errors, hosts
 from mxeon.conformance.check import judge, not_measured
 from mxeon.conformance.release import released
-from mxeon.conformance.results import (
-    NOT_RUN,
-    SHADER_FUNCTIONS,
-    SOURCE,
-    Cause,
-    Diagnosis,
-    Kind,
-    Quantity,
-    Result,
-)
+from mxeon.conformance.results import NOT_RUN, SOURCE, Cause, Diagnosis, Kind, Quantity, Result
 from mxeon.conformance.samples import generator
 from mxeon.conformance.specs import PLAIN_LOBES, diffuse, lobes
 from mxeon.conformance.tolerance import Measurement, count_of
@@ -68,7 +59,7 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
     ]
     if all(has_functions(library, language) for language in LANGUAGES):
         results.append(
-            _judged("languages", SHADER_FUNCTIONS, "osl", library, partial(_twins, library))
+            _judged("languages", "shader twins", "osl", library, partial(_twins, library))
         )
     if library != "stock":
         results.append(_judged("clash", "every two nodes", "", library, partial(_clashes, library)))

@@ -61,11 +61,7 @@ def grouped(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, list
 
 
 def node_of(subject: str) -> str:
-    """The node of a result's subject, which names the node's mode after a comma.
-
-    >>> node_of("sheen_bsdf, mode zeltner")
-    'sheen_bsdf'
-    """
+    """The node of a result's subject, which names the node's mode after a comma."""
     return subject.partition(",")[0]
 
 
