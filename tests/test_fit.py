@@ -90,7 +90,7 @@ ONE = MeasuredBrdf(SIDES[:1], SIDES[1:2], np.array([[0.2, 0.1, 0.05]]), np.array
         (ONE, 0),  # there are fewer values than parameters
         (replace(ONE, error=None), 0),
         (MeasuredBrdf(*(np.repeat(each, 2, 0) for each in (ONE.wo, ONE.wi, ONE.value))), 0),
-        # A black surface determines only the color.
+        # Measurements of a black surface determine only the color.
         (MeasuredBrdf(SIDES, SIDES[::-1], np.zeros((3, 1)), 0.001), 1),
     ),
 )

@@ -61,7 +61,7 @@ def rows_of(names):
 
 
 def is_one_of(found, causes):
-    """Whether the cause of a failure is in `causes`, by kind, key and region."""
+    """Whether a cause in `causes` has the kind, key and region of a failure's cause."""
     regions = [each.region and each.region.name for each in causes]
     return found in [[e.kind.value, e.key, name] for e, name in zip(causes, regions, strict=True)]
 

@@ -77,7 +77,7 @@ CASES += [(next(iter(NESTED)), each, True) for each in OPAQUE[1:]]
 @pytest.mark.parametrize("name, opaque, folded", CASES)
 def test_white_masks_over_white_reflect_all_light(gl, monkeypatch, name, opaque, folded):
     total = furnace(gl, monkeypatch, "eonlib", folded, opaque, NESTED[name])
-    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # each case has two dielectrics or fewer
+    np.testing.assert_allclose(total, 1.0, atol=2 * FIT)  # each case has at most two dielectrics
 
 
 def test_of_stock_they_lose_light_where_the_generator_folds(gl, monkeypatch):

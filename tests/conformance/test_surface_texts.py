@@ -18,7 +18,7 @@ from tests.support.verdicts import Verdicts, has
 from tools.site.ledger import apply, linked, patches
 
 pytestmark = pytest.mark.whole
-SAME = 1e-4  # tolerance, because the graphs contain rounded constants
+SAME = 1e-4  # the tolerance allows for rounded constants in the graphs
 INPUTS = sorted({(spec.text.node, port.name) for spec in SENTENCES for port in spec.inputs})
 
 

@@ -9,7 +9,7 @@ from mxeon.shaders.library import examples_folder
 
 # Generated shaders may contain this call only if a document's own, permitted code has the call.
 POISON = "poison()"
-# Content of files outside the document's folder, which no output may contain.
+# Files outside the document's folder have this content. No output may contain the content.
 CANARY = "canary-5f1e"
 
 VALUES = (

@@ -67,7 +67,7 @@ def test_a_textured_material_is_seen_at_the_exact_points(on_storm, tmp_path):
     text = document_text(image("brick_color.png") + nodes)
     [shader] = on_storm.compile(written(tmp_path, text))
     points = sphere(16)
-    seen = points.mask & (points.position.min(axis=-1) > 0.0)  # emission is not negative
+    seen = points.mask & (points.position.min(axis=-1) > 0.0)  # negative values cannot be emitted
     # Storm's camera is so far away that float32 rounds z to a sixteenth.
     found, exact = on_storm.picture(shader, SMALL)[seen], points.position[seen]
     assert np.abs(found - exact)[:, :2].max() <= HALF

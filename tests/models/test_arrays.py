@@ -29,11 +29,11 @@ from tools.site import arrays as table
 TINTS = ("rho", "color", "tint", "radiance", "base", "absorption", "scattering")
 TINTS += ("emission", "scattered", "behind")
 COLORS = {"color0", "color82", "color90", "ior", "extinction", *TINTS}
-# Parts of names of functions whose roughness has two components.
+# Functions whose names contain one of these words take a roughness with two components.
 PAIRS = ("microfacet", "ggx_", "btdf", "transmittance_dir")
 INTERFACES = "dielectric_over_eon", "varnished"
 ROWS, FEW = 48, 4
-# Endings of names of functions that sum thousands of quadrature nodes per row.
+# Functions whose names have these endings sum thousands of quadrature nodes per row.
 FACETS = ("dielectric_albedo_dir", "conductor_albedo_dir", "schlick_albedo_dir")
 QUADRATURES = (*FACETS, "film_albedo_dir", "transmittance_dir", "ggx_albedo_dir_anisotropic")
 QUADRATURES += ("conty_kulla_albedo_dir",)
@@ -47,7 +47,7 @@ GRADIENT = 1e-7  # error of finite differences, divided by the larger of 1 and t
 WIDTH = 1e-4  # step of the finite differences
 # Multiples of WIDTH: three single steps and three double steps on each side.
 OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)
-RELIABLE = 2e-8  # largest difference between the two step widths, for a reliable derivative
+RELIABLE = 2e-8  # largest difference of a reliable derivative between both step widths
 COMPARED = 0.6  # minimum fraction of partial derivatives that must be compared
 # Two functions have a smaller minimum fraction. The curve of a film is clamped at thousands of
 # nodes, which causes kinks. In `diffusion_blur`, a root amplifies the rounding of differences.

@@ -149,7 +149,7 @@ def test_a_material_each_gives_the_values_of_single_calls(name):
     given = {"albedo_dir": (0.4,), "albedo_avg": (), "sample": (WO, [0.3, 0.6])}
     for each in row.parameters:
         shift = 0.1 * rng.random((2, *np.shape(each.default)))
-        inputs[each.name] = 0.9 * np.asarray(each.default) + shift[[0, 1, 1]]  # two are equal
+        inputs[each.name] = 0.9 * np.asarray(each.default) + shift[[0, 1, 1]]  # two equal channels
     for function in row.functions:
         call, at = getattr(row, function), given.get(function, (WO, LIGHT[row.lights]))
         for chosen in (inputs, *({key: inputs[key]} for key in inputs)):

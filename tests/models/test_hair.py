@@ -122,7 +122,7 @@ def test_each_form_has_other_values(form):
 
 @pytest.mark.parametrize("tilt", [0.0, 3.0])
 def test_mitsuba_has_the_values_of_the_model(tilt):
-    """Mitsuba follows [Chiang2016]: no factor 1 / pi, and the tilt applies to the viewer."""
+    """Mitsuba follows [Chiang2016], without a factor 1 / pi. The tilt applies to the viewer."""
     mi = package("mitsuba")
     mi.set_variant("scalar_rgb")
     absorption, beta = (0.1, 0.2, 0.3), 0.6

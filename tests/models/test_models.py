@@ -280,7 +280,7 @@ def test_fitted_albedo_of_qon_is_lambert_when_smooth_and_off_when_rough():
 # --- variants of renderers ---------------------------------------------------------------------
 
 WO, WI = directions((2, 1000), seed=1, least=0.05)
-# Parameters that correspond to an EON roughness of 0.6, by the end of a model's name.
+# Parameters that correspond to an EON roughness of 0.6. Keys are endings of model names.
 PARAMETERS = {"half_pi": 0.3 * np.pi, "slope": 0.6 / np.sqrt(2.0), "squared": 0.36}
 
 

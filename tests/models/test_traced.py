@@ -135,7 +135,7 @@ def test_torch_differentiates_and_maps_every_function_of_every_model(name, funct
         found = {k: none[k] if t.grad is None else t.grad.numpy() for k, t in tensors.items()}
         return value.detach().numpy(), found
 
-    # Inside the ranges, values and slopes match NumPy's.
+    # Inside the ranges, values and slopes match the results of NumPy.
     given, inputs = vectors(row, function), inside(row)
     value, found = gradients(given, inputs)
     np.testing.assert_allclose(value, numbers(model(*given, **inputs)), VALUE, VALUE)

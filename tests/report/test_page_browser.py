@@ -35,7 +35,7 @@ def browser():
 
 @contextmanager
 def opened(browser, address, **options):
-    """Context with the report page. Network requests and console messages fail the test."""
+    """Context manager that opens the report page. Network requests and console messages fail."""
     page = browser.new_page(**options)
     with watched(page, address):
         yield page

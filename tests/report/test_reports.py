@@ -133,7 +133,7 @@ ALL = Errors(1000, 100, 0, 0.3, 0.05)
 
 
 def errors(*regions, samples="a", **changes):
-    """Error fields of a result, which are ALL with the given changes, in total and by region."""
+    """Error fields of a result, in total and by region. The changes replace fields of ALL."""
     whole, *parts = ({**changes}, *regions)
     found = (replace(ALL, **whole), *(replace(ALL, **{**changes, **each}) for each in parts))
     return {"errors": found, "samples": samples}
@@ -479,7 +479,7 @@ def test_names_in_a_report_cannot_steer_the_terminal(tmp_path, capsys):
 
 
 def run_with(*folders, verdict=PASSED):
-    """Invented run with folders as libraries; `verdict` is the verdict on the last folder."""
+    """Run with invented results for libraries in folders. `verdict` applies to the last folder."""
     runs = [made_run(library=folder) for folder in folders[:-1]]
     runs.append(made_run(verdict, library=folders[-1]))
     libraries = {folder: {"folder": ("a.mtlx",)} for folder in folders}
@@ -508,7 +508,7 @@ TOLERANCE = 1e-6
 
 
 def made(check, error, **changes):
-    """Invented result of a check of the EON node on gl."""
+    """Result with invented values, as if a check had judged the EON node on gl."""
     verdict = PASSED if error <= TOLERANCE else FAILED
     result = Result(
         check, "claim.", EON, "gl", "stock", verdict, error, Quantity.DIFFERENCE, TOLERANCE,

@@ -69,7 +69,7 @@ OUTSIDE = (
     ),
 )
 
-# Malformed texts of a number, and the number that MaterialX reads from each text.
+# Malformed numbers as text, and the number that MaterialX reads from each text.
 READ = {"0.5f": 0.5, "0x10": 0, "1d5": 1, "1/2": 1, "50%": 50, "0.5;0.5": 0.5, "0.5.0": 0.5}
 READ |= {"1.#INF": 1, "1_0": 1, "0.5, 0.6": 0.5, "1e5f": 100000, "0 5": 0}
 CONSTANT = (

@@ -34,7 +34,7 @@ def findings(libraries, nodes, hosts=("gl",)):
     found = {library: {} for library in libraries}
     for each in run.results:
         key = each.host, each.check, each.subject
-        if each.check != "release":  # only folders are compared with the release
+        if each.check != "release":  # only libraries in folders are compared with the release
             found[each.library][key] = each.verdict, each.error, each.diagnosis, each.pages
     return found.values()
 

@@ -36,7 +36,7 @@ def furnished(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def materials(furnished, tmp_path_factory):
-    """Root of the document with materials, and the places whose text reaches shader source."""
+    """Root of the document with materials, and the attributes whose text reaches shader source."""
     root = reach.documents()["materials"]
     groups = reach.present(root)
     return root, shared(tmp_path_factory, "reach", lambda: reach.reached(root, groups, CLASSES))

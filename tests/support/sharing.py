@@ -30,7 +30,7 @@ def shared(factory, name, make):
         return pickle.loads(path.read_bytes())
 
 
-# Checks of shader text for path tracers, which only eonlib provides.
+# Checks of shaders for path tracers, which only eonlib provides.
 DRAWN = ("pdf", "sample", "path_value", "path_inside", "path_energy", "path_leaving")
 DRAWN += ("path_albedo", "path_emission", "path_random")
 

@@ -196,7 +196,7 @@ REFRACTED_GRID = 1e-3
 # Documented error of the transmittance from the side with the larger index of refraction.
 TRANSMITTANCE_CRITICAL = 1e-8
 
-# Error of averages over the cosine with 32 Gauss nodes, on both sides of the surface.
+# Error of cosine-weighted averages with 32 Gauss nodes on each side of the surface.
 REVERSED = 5e-5
 
 # --- Mitsuba, float32 --------------------------------------------------------------------------
