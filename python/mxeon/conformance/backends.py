@@ -267,7 +267,7 @@ class Evaluating(Backend):
         return self.evaluate(batch, branch, "throughput")
 
     def transmitted(self, batch: Batch, radiance: NDArray[np.float32] | None = None) -> Array:
-        """Environment light through the surface, (N, 3). The default environment is uniform."""
+        """Environment light that the surface transmits, (N, 3). By default, the sky is uniform."""
         return self.evaluate(batch, "transmission", irradiance=radiance)
 
     @cached_property
@@ -318,7 +318,7 @@ class Evaluating(Backend):
 
 
 class Media(Evaluating):
-    """A backend for media, and for nodes that are only checked for an implementation."""
+    """A backend for media, and for nodes that only need an implementation."""
 
     abilities = Ability.MEDIUM | Ability.IMPLEMENTATION | Ability.PAIRS | Ability.LIGHT
 
@@ -331,13 +331,13 @@ SOME = 1 << 8  # maximum number of special direction pairs of each kind
 # The sharpest lobe (alpha 1e-4) amplifies a float64 rounding, 2^-53, by 1e8. The product is less
 # than one float32 rounding, 2^-24.
 ARGUMENTS = sum_of(roundings(1, "of arguments printed with nine digits"), exact=True)
-# Each input is rounded up to 16 times before a closure receives the value. A microfacet
-# distribution amplifies a relative error by at most 4.
+# Each input has up to 16 roundings before a closure receives the value. A microfacet distribution
+# amplifies a relative error by at most 4.
 GRAPH = sum_of(roundings(4 * 16, "(16 from an input to an argument, times the slope 4)"))
 
 
 def joined(batches: Sequence[Batch]) -> Batch:
-    """One batch with the direction pairs of all batches, which must have equal input names."""
+    """One batch with the direction pairs of all batches. All batches must have the same inputs."""
     if len(batches) == 1:
         return batches[0]
     wo, wi = (np.concatenate(each) for each in ([b.wo for b in batches], [b.wi for b in batches]))
@@ -389,7 +389,7 @@ class Closures(Evaluating):
 
     @cached_property
     def few(self) -> tuple[Batch, ...]:
-        """A subset of each kind of samples, in few batches that save the fixed cost of each run."""
+        """Take some samples of each kind, in few batches, because each run has a fixed cost."""
         few = (batch.first(self.counts.few) for batch in self.batches)
         groups = grouped(few, lambda batch: (*sorted(batch.inputs), batch.frame is None))
         return tuple(map(joined, groups.values()))
@@ -512,7 +512,7 @@ class RenderablePairs(Evaluating):
 
     @cached_property
     def views(self) -> tuple[Batch, ...]:
-        """A few of the views, among which a fixed number of light paths is divided."""
+        """Use few views, because all views share a fixed number of light paths."""
         return (super().views[0].first(self.counts.albedos),)
 
     @cached_property
@@ -786,7 +786,7 @@ class CyclesPictures(Spheres):
 
 
 class Drawn(Spheres):
-    """Pictures of a sphere whose points and light are exact up to rounding."""
+    """Pictures of a sphere. Points and light directions are exact up to rounding."""
 
     abilities = Ability.LOBE | Ability.DIFFUSE | Ability.BELOW | Ability.LIGHT
     exact: ClassVar[Errors] = {"value": EXACT, "albedo": EXACT_ALBEDO, "lambert": EXACT}

@@ -140,7 +140,7 @@ class Case:
         return candidates(self.spec, quantity)
 
     def tolerance(self, *quantities: str) -> Tolerance:
-        """The tolerance of the first quantity that has a tolerance, plus the engine's errors."""
+        """The first of the quantities' tolerances that exists, plus the engine's errors."""
         errors = self.backend.errors(self.spec)
         for quantity in quantities:
             if error := errors.get(quantity):
@@ -201,7 +201,7 @@ def dead_inputs(
 ) -> list[str]:
     """Names of inputs that do not affect the values of `evaluate`, by default `case.direct`."""
     batch, evaluate = batch or case.few[0], evaluate or case.direct
-    original = evaluate(batch)  # most changes start from the unmodified batch
+    original = evaluate(batch)  # values before most changes
     dead = []
     for name, (before, after) in case.changes.items():
         values = evaluate(batch.altered(**before)) if before else original

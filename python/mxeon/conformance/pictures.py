@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compare pictures of documents' materials with reference pictures, and draw samples of nodes."""
+"""Compare pictures of documents' materials with reference pictures, and draw diffuse nodes."""
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence

@@ -2,7 +2,8 @@
 """Compare definitions, units, graphs and sources of a library with the installed MaterialX release.
 
 Other checks judge nodes with a model. For everything else, the release is the reference. If the
-text or graph of a node differs from the release, the node must have the values of the release.
+source code or graph of a node differs from the release, the node must have the values of the
+release.
 
 A library that lacks nodes of the release is an older version and is not compared. A library with
 additional nodes in MaterialX's own documents may be a newer version, so differences of that library
@@ -38,7 +39,7 @@ from mxeon.shaders.library_tree import search_path
 from mxeon.shaders.released_graphs import differences, hidden, port_text, ports_of
 from mxeon.shaders.scene import CLIENT, FURNACE, SIDE, Client
 
-# Baselines identify results by the subject, so this text must not change.
+# Baselines identify results by the subject, so the string SUBJECT must not change.
 RELEASE, SUBJECT = "release", "definitions, units, graphs and texts"
 CLAIM = "Parts without a model are as MaterialX released them, or have the same values."
 SAMPLES = 64  # number of samples of a node's inputs
@@ -242,7 +243,7 @@ class Comparison:
     def nodes(self) -> list[Cause]:
         """Causes for nodes whose values differ from the values of the release.
 
-        If several nodes differ by the same change of text or share a graph, only the first node
+        If several nodes differ by the same change of code or share a graph, only the first node
         with different values is reported.
         """
         names = (definition.getName() for definition in self._compared)

@@ -26,7 +26,7 @@ GOLDEN_RATIO = 0.618  # multiples of this number modulo 1 are evenly spread
 PAIRS = 1 << 16
 FEW = 1 << 14  # default number of pairs for expensive checks
 GRAZING = 1e-6  # smallest cosine of the random pairs
-RIM = 0.05  # smallest cosine judged in pictures; closer to the rim, values vary inside a pixel
+RIM = 0.05  # smallest cosine judged in pictures; nearer the rim, values vary inside a pixel
 LOBE_RIM = 0.25  # smallest cosine judged in pictures of a diffuse lobe below other lobes
 
 Array: TypeAlias = NDArray[np.float64]
@@ -49,7 +49,7 @@ class Counts:
     mirrored: int = 1 << 11  # views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """Counts reduced by up to 1/8, depending on the seed, so that no shader can expect them."""
+        """Counts reduced by up to 1/8. The seed determines how much, so shaders cannot guess."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -65,7 +65,8 @@ class Batch:
 
     wo: Array  # directions to the viewer in local frames, (N, 3), on or above the horizon
     wi: Array  # directions to the light in local frames, (N, 3)
-    # Node inputs and "occlusion", (N, ...) or constant. Normals and tangents are in world space.
+    # Inputs of the node, and the input "occlusion", (N, ...) or constant. Normals and tangents are
+    # in world space.
     inputs: Mapping[str, Array]
     scene: Scene | None = None  # scene of a picture, if the pairs are points of the picture
     frame: Array | None = None  # axes of local frames as columns, (N, 3, 3); world axes if None

@@ -27,7 +27,7 @@ from mxeon.models import diffuse, sampling
 from mxeon.shaders import functions
 
 KINDS = ("pairs", "pictures", "rendered")  # host types that can call shader functions
-STEP = 2.0**-22  # step of an argument for measuring a function's condition number
+STEP = 2.0**-22  # change of an argument by which a function's condition number is measured
 PART = tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(16))
 
 
@@ -55,8 +55,8 @@ FUNCTION_CHECKS = (
     FunctionCheck("densities",
                   "The sampling densities and the matrix of linearly transformed cosines match NumPy's.",
                   r"\w+_pdf|ltc_(density|m[abcd])",
-                  # A matrix entry has 8 roundings. An inverse fourth power multiplies the 8
-                  # roundings by 4 and adds 16.
+                  # A matrix entry has 8 roundings. The inverse fourth power multiplies the 8 by 4
+                  # and adds 16.
                   tolerance.sum_in(Quantity.CONDITIONED, tolerance.roundings(48, "(four times the 8 of a matrix entry, plus 16)"))),
     FunctionCheck("parts", "The functions that models and sampling are built from match NumPy's.",
                   r"\w+", PART),

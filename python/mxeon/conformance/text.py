@@ -77,7 +77,7 @@ def check_texts(subjects: Iterable[diffuse.DiffuseSpec], library: str) -> tuple[
 def _judged(
     check: str, subject: str, target: str, library: str, faults: Callable[[], Faults]
 ) -> Result:
-    """The result of checking the source code of one target, or of several targets."""
+    """The result of checking the source code of one or several targets."""
     claim, quantity, variant = CLAIMS[check]
     named = f"{subject}, {target}" if target else subject
     place = Result(check, claim, named, SOURCE, library, NOT_RUN)
@@ -178,7 +178,7 @@ def _evaluated(expression: str, inputs: Inputs, functions: Mapping[str, object])
 
 
 def _dropped_inputs(subject: lobes.ScatteringSpec, target: str, library: str) -> Faults:
-    """Inputs that a call ignores, so that no argument has the unique value of the input."""
+    """Inputs that a call ignores: no argument equals the unique value of the input."""
     expression = _lobe_expression(subject, target, library)
     names = tuple(subject.types) if isinstance(subject, lobes.PbrSpec) else subject.names
     inputs = {name: np.array([[0.371 + index]]) for index, name in enumerate(names)}

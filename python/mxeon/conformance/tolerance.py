@@ -64,7 +64,7 @@ def scaled(measured: Array, expected: Array) -> Array:
 
 
 def relative(measured: Array, expected: Array) -> Array:
-    """Largest relative difference of each row. Values are divided by expected values."""
+    """Largest relative difference of each row. Differences are divided by expected values."""
     return absolute(measured / expected, 1.0)
 
 

@@ -619,7 +619,7 @@ def sentence(run: Run) -> str:
 
 
 def summary(run: Run) -> str:
-    """The verdict, MaterialX's version, MaterialX's folder unless installed, and the time."""
+    """The verdict, the version and folder of the judged MaterialX, and the time."""
     text = sentence(run)
     if version := run.software.get("MaterialX"):
         folder = run.software.get("MaterialX folder")
@@ -638,7 +638,7 @@ def origins(run: Run) -> tuple[str, ...]:
 
 
 def not_judged(run: Run) -> tuple[str, ...]:
-    """A line that lists subjects that no check judges, and the reasons; () without subjects."""
+    """A line with the subjects that no check judges, and with reasons; () without such subjects."""
     reasons: dict[str, list[str]] = {}
     for what, reason in run.unjudged:
         reasons.setdefault(reason, []).append(what)

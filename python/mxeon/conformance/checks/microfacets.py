@@ -183,7 +183,7 @@ def anisotropic_albedo(case: Case) -> Iterator[Compared]:
 
 
 def own_lookups(case: Case) -> list[Methods]:
-    """Methods with the library's own environment lookups, unless a client chose the methods."""
+    """Lighting methods with the library's own lookups, or [] if a client chose the methods."""
     from mxeon.shaders.library import environment_folders
 
     if case.host.active == GENERATED and not case.control and environment_folders(case.library):

@@ -71,7 +71,7 @@ FUNCTIONS = {
 }
 DRAWS = 1 << 15
 ANSWERS = cache.Recent[Array](64)  # cache shared by a check and the check's negative control
-# Views at which different numbers of facets transmit light from inside a solid.
+# Views at which many, some or few facets transmit light from inside a solid.
 VIEWS = np.array([[0.7642691, 0.2364137, 0.6], [-0.19, 0.25, 0.9495], [0.3, -0.9367497, 0.18]])
 VIEWS /= np.linalg.norm(VIEWS, axis=1, keepdims=True)
 # Smallest value that must be sampled. Smaller values may be missed, because a sheen's fitted albedo
@@ -102,7 +102,7 @@ GLASS: dict[str, tuple[str, Values]] = {
     "standard_surface": ("specular_IOR", {"transmission": 1.0, "specular_roughness": 0.5}),
     "open_pbr_surface": ("specular_ior", {"transmission_weight": 1.0, "specular_roughness": 0.5}),
 }
-INDEX = 2.0  # an IOR whose inverse is exact in float32
+INDEX = 2.0  # IOR with an inverse that is exact in float32
 DRAWN = check.family(LobeSpec) - BELOW
 GLASSY = TRANSMITTING | SURFACES  # nodes through which light enters and leaves a solid
 # Lobes whose reflection depends on an IOR, which is inverted for light inside a solid.
@@ -399,7 +399,7 @@ def path_value(case: Case) -> Iterator[Compared]:
         batch = replace(batch, wi=wi)
         normal = np.broadcast_to(NORMAL, wi.shape)
         if shader and batch.frame is not None:
-            # Use +z or -z of the frame, because the node graph rotates tangents about the normal.
+            # Use +z or -z of the frame as the normal, about which the node graph rotates tangents.
             normal = np.einsum("nij,ni->nj", batch.frame, batch.inputs["normal"]).round()
         local = replace(batch.altered(normal=normal, tangent=TANGENT), frame=None)
         # Rasterizers cannot draw the inside of a solid, so skip inside views if there is an IOR.

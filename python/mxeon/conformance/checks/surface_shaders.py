@@ -175,7 +175,7 @@ SENTENCE = Comparison("value", direct_values, lambda case: case.valued.value_can
 
 
 def diagnose_sentence(case: Case) -> Diagnosis:
-    """Find the formula that the shader, or else the shader's graph, uses for a sentence."""
+    """Find the formula by which the shader or its graph implements a specified sentence."""
     from mxeon.conformance.reference import Reference
 
     spec, explained = case.of(SentenceSpec), SENTENCE.diagnose(case)

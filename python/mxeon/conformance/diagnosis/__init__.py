@@ -56,7 +56,7 @@ SAME, NEAR = 0.03, 0.3
 FAR = 0.2  # a near model has at most this fraction of the expected model's distance
 NAMED = 0.5  # largest distance of a reported model, as a fraction of the distance of black values
 INEXACT = 30.0  # errors up to 30 times the tolerance count as inaccuracy of the expected model
-LEAST_LIGHT = 1e-3  # smallest cosine of the light at which faults that change the cosine differ
+LEAST_LIGHT = 1e-3  # smallest cosine of the light that shows which fault changes the cosine
 
 
 def defect(key: str, *names: str) -> Diagnosis:
@@ -375,7 +375,7 @@ def diagnose_throughput(passed: Mapping[tuple[str, str], Sequence[Compared]]) ->
 
 
 def diagnose_frame(case: Case) -> Diagnosis:
-    """Diagnose the first wrong branch: an ignored normal or axis, or a region of wrong values."""
+    """Diagnose the first wrong kind of light: an ignored normal or axis, or a region."""
     tolerance = case.tolerance("frame")
     rows = (
         ("direct", case.direct, case.expected),

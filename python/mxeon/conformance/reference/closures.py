@@ -173,7 +173,7 @@ def _inputs(closure: ClosureTree, row: PbrNode) -> Arguments:
             rough = np.stack([inputs[f"variance_{lobe}"], inputs[f"scale_{lobe}"]], axis=-1)
             inputs[name] = np.clip(rough, LEAST_HAIR, None)
     if closure.name in MICROFACETS:
-        # OpenPBR computes alphas above 1 for anisotropic lobes, which shaders clamp to 1.
+        # OpenPBR computes alphas above 1 for anisotropic lobes. Shaders clamp such alphas to 1.
         alphas = np.stack([inputs["roughness_x"], inputs["roughness_y"]], axis=-1)
         inputs["roughness"] = np.clip(alphas, 0.0, 1.0)
         inputs["tint"] = inputs.get("reflection_tint", np.ones((1, 3)))

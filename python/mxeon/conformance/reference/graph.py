@@ -146,7 +146,7 @@ class Graph(Nodes):
         def surface(bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0) -> Array:
             return np.asarray((bsdf.value + edf) * opacity, np.float64)
 
-        ports = ("bsdf", "opacity", "edf")  # opacity and emission may be ignored
+        ports = ("bsdf", "opacity", "edf")  # omit opacity and emission if not wanted
         known["surface"] = ports[: 1 + self._emits + emits], surface
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)
@@ -208,7 +208,7 @@ class Graph(Nodes):
             return self._constant(path, name, replaced)
         if not port.getConnectedNode():
             return self._constant(path, name, self._written(path, name, port))
-        # Only inputs of lobes, and of nodes that contain lobes, may be measured.
+        # Only inputs of lobes, and of nodes that contain lobes, may be drawn by the host.
         scatters = any(each.getType() in drawn_values.CLOSURES for each in self._along(owner, path))
         label = f"{port.getParent().getName()}.{name}" if scatters else ""
         return self._connected(path[:-1], port, label)
@@ -293,7 +293,7 @@ class Graph(Nodes):
         return constant * float(scales.get(port.getUnit(), 1.0))
 
     def _image(self, node: mx.Node) -> Array:
-        """Values of an image node at the points' own texture coordinates."""
+        """Values of an image node at the texture coordinates of the points."""
         if self._points.texcoord is None or node.getInput("texcoord") is not None:
             raise NotRun("reference: images are supported only at the sphere's own coordinates")
         file = node.getInput("file")

@@ -390,7 +390,7 @@ class Picture:
     def difference_map(self) -> NDArray[np.float64]:
         """Absolute `mxeon.io.images.difference` of each pixel, (size, size).
 
-        If only a lattice of pixels was judged, pixels between the lattice have the difference of
+        If only a lattice of pixels was judged, pixels between lattice pixels have the difference of
         the nearest lattice pixel. Other pixels that were not judged are NaN.
         """
         if self.reference is None:

@@ -52,7 +52,7 @@ class Issue:
     # correct lobes, and RENDERER_NODES for a defect of a renderer's own nodes.
     library: str = STOCK
     unavoidable: bool = False  # whether every library has the defect, which no library can repair
-    differs: bool = False  # the specification permits both behaviors
+    differs: bool = False  # whether the specification permits the behavior
     rows: tuple[Row, ...] = ()  # results that all fail and that the page's table lists
     # Other results that may fail or differ due to the defect, on hosts with the defect.
     implied: tuple[Row, ...] = ()
@@ -61,7 +61,7 @@ class Issue:
     # Results that, with the patch, either pass or still fail for one of the listed causes.
     remains: Mapping[Row, tuple[Cause, ...]] = field(default_factory=dict, hash=False)
     needs: tuple[str, ...] = ()  # other pages whose patches must also be applied
-    kind: str = ""  # "choice", "NaN", "compiles" or "in main after DATE, #PULL", for a patch
+    kind: str = ""  # kind of patch: "choice", "NaN", "compiles" or "in main after DATE, #PULL"
     pull: int = 0  # number of the pull request that repairs the defect after the release
     cause: Cause | None = None  # first cause in the diagnosis of the first row
     # A file of MaterialX, the text that the patch replaces in the file, and the new text.
@@ -211,8 +211,8 @@ def _explains(issue: Issue, result: Result, materialx: str) -> bool:
         error, size = result.error or 0.0, issue.sizes.get(row, math.inf)
         if error > SPREAD * size:
             return False
-        # If the node's own model is nearest and the issue's error is many times larger, the issue
-        # is repaired and the remaining error has another cause.
+        # If the node's own model is nearest and the issue's error is many times larger than the
+        # result's, the issue is repaired, and the remaining error has another cause.
         own, *others = result.diagnosis.distances.values() or (math.inf,)
         if own < min(others, default=own) and error < size / REPAIRED:
             return False

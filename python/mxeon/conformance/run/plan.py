@@ -137,7 +137,7 @@ def _nodes(
 
 @cache
 def _modes() -> tuple[tuple[Spec, ShownNode], ...]:
-    """Each spec, and its node in the judged mode, without specs that only users can request."""
+    """Each spec and its node, in the judged mode, without specs that only users can request."""
     specs = (spec for spec in ALL_SPECS if spec not in surface_texts.SENTENCES)
     return tuple((spec, node_of(spec.document(), spec.node)) for spec in specs)
 
@@ -330,7 +330,7 @@ def make_plan(
         tasks += [Task(HOST, node, hosts[0], libraries[0]) for node in unmeasured]
     if not files and nodes and {ALL, COMMON}.isdisjoint(nodes):
         documents = []
-    # A folder's definitions and graphs of the requested nodes may differ from the release.
+    # Definitions and graphs of the requested nodes in a folder may differ from the release.
     own = sorted({each.getNodeString() for each in load_library("stock").getNodeDefs()} & {*nodes})
     if own and not any(task.check == RELEASE for task in tasks):
         compared_there = (each for each in comparisons if each.host in measuring)

@@ -26,7 +26,7 @@ NESTED_VALUE = sum_of(VALUE.term("two values and a throughput"), *THIRD, exact=T
 ERRORS = {
     "albedo": ALBEDO,
     "throughput": ALBEDO,
-    # Both values are the same product with an exact factor, so one rounding separates both values.
+    # Both values are the same product with an exact factor, so the values differ by one rounding.
     "factor": sum_of(Term(ROUNDING, "one float32 rounding"), exact=True),
     "frame": sum_of(FLAT_FRAME.term("three lobes in another frame", 3.0)),
 }
@@ -75,7 +75,7 @@ COLORED = ("multiply_color3", "multiply_sum")  # rows whose factor is a color
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CombinedSpec(PbrSpec):
-    """A node that combines lobes of weight 1."""
+    """A node that combines lobes. All lobes have weight 1."""
 
     requires = spec.Ability.LOBE | spec.Ability.COMBINATION
     # MaterialX scales a lobe by a mix's connected weight in all nodes that use the lobe.

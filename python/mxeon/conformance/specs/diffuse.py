@@ -37,8 +37,8 @@ VALUE = sum_in(
 # of H.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, including the fit of H")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
-# Oren and Nayar's ratio s / t amplifies the rounding of a cosine of at least 1/4 by 4, a sine by 3,
-# and the other factors by 2. The sum is 9.
+# Oren and Nayar's model amplifies the rounding of a cosine of at least 1/4: by 4 in the ratio s /
+# t, by 3 in a sine, and by 2 in the other factors. The sum is 9.
 FRAME = sum_in(
     Quantity.VALUE_OR_ALBEDO,
     roundings(2 * 28, "of two values"),
@@ -124,8 +124,7 @@ def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
     known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
     rows = {each.name: each for each in known}
     expected = reference.diffuse_model(model)
-    # If models have equal BRDFs, only one model is a variant for values, but all models are
-    # variants for albedos.
+    # Models with equal BRDFs are a single variant for values, but separate variants for albedos.
     owners = {each.brdf_of: each.name for each in (*rows.values(), expected)}
     variants = []
     for name, each in rows.items():

@@ -90,7 +90,7 @@ SMALL = scene.Scene("dark", size=8)
 OPACITIES = (0.0, 0.25, 1.0)
 
 
-# The two cosines of a cone have ten roundings in all, and the differences of cosines have two.
+# A cone's two cosines have ten roundings in all, and two differences of cosines have two more.
 CONE_ROUNDINGS = 12
 # Tolerances of some rows, by name. All other rows have the tolerance UNIFORM.
 # fmt: off
@@ -161,7 +161,7 @@ class ConeSpec(EmissionSpec):
     def random_inputs(self, rng: samples.Rng, count: int) -> dict[str, Array]:
         """Random inputs: half of the cones have a falloff, and a quarter are narrow.
 
-        In a cone without a falloff, the outer angle is at most the inner angle.
+        A cone without a falloff has an outer angle of at most the inner angle.
         """
         inputs, turn = super().random_inputs(rng, count), rng.random(count)
         soft = rng.random(count) < 0.5
@@ -331,7 +331,7 @@ class MediumSpec(spec.RowSpec[media.Value]):
         return nodes.document_text(media + nodes.network_text(SLAB) + nodes.SURFACE)
 
     def batches(self, counts: Counts) -> tuple[Batch, ...]:
-        """Random views and inputs, without grazing views, whose refraction amplifies roundings."""
+        """Random views and inputs. No view is grazing, because refraction amplifies roundings."""
         rng, count = generator(), counts.pairs
         wo = samples.turned_directions(rng, count)
         return (Batch(wo, wo * [1.0, 1.0, -1.0], self.random_inputs(rng, count)),)

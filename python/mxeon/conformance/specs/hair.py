@@ -103,7 +103,7 @@ class Region:
 
 NARROW = partial(Region, variances=(1e-3, 0.1), scales=(0.9, 1.0), form=BESSEL)
 # fmt: off
-# Regions. The key of a region is also the key of the check that covers the region.
+# Regions of views and roughnesses. The key of a region is also the key of the region's check.
 REGIONS = {
     "each_lobe": Region("Each lobe matches the equations: R, TT, and TRT with all higher orders.",
                         tints=LOBE_TINTS, form=UNIFORM),
@@ -133,7 +133,7 @@ class HairSpec(PbrSpec):
     counts: Counts = COUNTS
 
     def values(self, function: Scattering, batch: Batch) -> Array:
-        """Values pi f, times the occlusion, (N, 3)."""
+        """Values pi f times the occlusion, (N, 3)."""
         occlusion = np.reshape(batch.inputs.get("occlusion", 1.0), (-1, 1))
         return np.asarray(np.pi * function(batch.wo, batch.wi, broadcast_inputs(batch)) * occlusion)
 
@@ -233,7 +233,7 @@ def _turned(direction: Array, inclination: float, azimuth: float) -> Array:
 
 
 def _sides(rng: samples.Rng, count: int) -> Array:
-    """Factors that mirror a random half of the directions at the horizon, (count, 3)."""
+    """Factors by which a random half of the directions is mirrored at the horizon, (count, 3)."""
     return np.stack([np.ones(count), np.ones(count), rng.choice([-1.0, 1.0], count)], axis=-1)
 
 

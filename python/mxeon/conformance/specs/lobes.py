@@ -48,7 +48,7 @@ def lobe_errors(
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ScatteringSpec(spec.RowSpec[Scattering], spec.LobeSpec):
-    """A node that scatters light by the equations of `row`."""
+    """A node whose scattered light is defined by the equations of `row`."""
 
     row: PbrNode
 

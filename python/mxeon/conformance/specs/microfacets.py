@@ -29,7 +29,7 @@ COUNTS = replace(lobes.PbrSpec.counts, diagnosed=1 << 8)  # the models are slow
 LEAST_ALPHA = 1e-3  # smallest alpha of random pairs
 LEAST_STRETCHED = 0.05  # smallest alpha and cosine of anisotropic lobes with measured albedos
 LEAST_INVERTED = 0.1  # smaller IORs of dielectrics are raised to 0.1 before inversion
-LEAST_INDEX = 1.05  # smallest IOR above 1 in the domain of the fit by tools/fits/ggx_cosine.py
+LEAST_INDEX = 1.05  # smallest IOR above 1 for which tools/fits/ggx_cosine.py fits albedos
 COSINE_STEP = 2.0**-18  # largest difference between wo . wh and wi . wh
 RIM_COLOR = 0.05  # smallest |wo + wi| if all channels of color90 are below 0.05
 # Smallest alpha of lobes with rotated tangents. Errors of a tangent grow by 1 / alpha.
@@ -224,7 +224,7 @@ class FacetSpec(lobes.PbrSpec):
 
     @property
     def value_candidates(self) -> tuple[samples.Candidate, ...]:
-        """The candidates that differ from the model for isotropic lobes."""
+        """The candidates whose values differ from the model's values for isotropic lobes."""
         return tuple(each for each in self.all_candidates if not each.anisotropic)
 
     @property
@@ -276,7 +276,7 @@ class FacetSpec(lobes.PbrSpec):
         return batch, self.integral(batch)
 
     def stretched_sums(self, counts: Counts) -> tuple[Batch, Array]:
-        """The views of `stretched`, and albedos as computed by MaterialX's environment sums."""
+        """The views of `stretched`, and the albedos that MaterialX's environment sums compute."""
         batch, _ = self.stretched(counts)
         return batch, batch.strength * node_albedo(self.node, batch.wo, batch.inputs, summed=True)
 
@@ -300,14 +300,14 @@ class FacetSpec(lobes.PbrSpec):
         return denser(batch.altered(roughness=rough))
 
     def integrable(self, inputs: dict[str, Array]) -> dict[str, Array]:
-        """Inputs without negative Fresnel curves, which fits of albedos do not clamp."""
+        """Inputs without negative Fresnel curves. Fits of albedos do not clamp such curves to 0."""
         changed = simple(inputs)
         if "color82" in changed:
             changed["color82"][falls_below_0(changed)] = 1.0
         return changed
 
     def nodes(self, wo: Array, inputs: dict[str, Array], count: int) -> tuple[Array, Array]:
-        # Reflect the view at visible facets, with Gauss nodes in height and uniform azimuths.
+        # Reflect the view at visible facets, which Gauss nodes and uniform azimuths select.
         x, w = np.polynomial.legendre.leggauss(count)
         height, around = np.meshgrid(0.5 * (x + 1.0), (np.arange(count) + 0.5) / count)
         size = height.size

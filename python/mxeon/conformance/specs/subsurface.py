@@ -26,7 +26,7 @@ MATERIALS: tuple[Values, ...] = (
     *(dict[str, ArrayLike](color=(1, 1, 1), radius=each, anisotropy=0.0) for each in np.eye(3)),
 )
 
-# Six circles approximate the integral of the profile with an error of up to 9.3e-3.
+# A sum over six circles approximates the integral of the profile up to an error of 9.3e-3.
 RINGS = tolerance.single(0.01, Quantity.DIFFERENCE, "six circles instead of the profile's integral")
 MEAN_OF_CIRCLES = "twice the mean error of six circles over a sphere"
 RINGS_MEAN = tolerance.single(0.003, Quantity.MEAN, MEAN_OF_CIRCLES, tolerance.mean_error)
@@ -47,7 +47,7 @@ class SubsurfaceSpec(PbrSpec):
 
 
 def _blurred(batch: Batch) -> Array:
-    """Values of MaterialX's implementation on a plane, (N, 3).
+    """Values that MaterialX's implementation computes on a plane, (N, 3).
 
     MaterialX adds light below the horizon and in shadow. For a cosine above 1, the arc cosine is
     NaN, and the light is 0.

@@ -68,8 +68,8 @@ MEAN = sum_of(
     quantity=Quantity.MATERIAL_MEAN,
     metric=mean_scaled,
 )
-# A reflecting lobe of albedo E over a transmitting lobe passes the fraction (1 - E)^2 of the light,
-# whose derivative has a magnitude of at most 2.
+# A reflecting lobe of albedo E over a transmitting lobe passes (1 - E)^2 of the light. The
+# derivative of (1 - E)^2 has a magnitude of at most 2.
 GLASS = sum_in(
     Quantity.ALBEDO,
     Term(2.0 * microfacets.LOBE_FIT, "twice the fit of a lobe's albedo"),

@@ -23,7 +23,7 @@ from mxeon.shaders.nodes import document_text, node_text
 
 Forms = tuple[str, ...]  # names of a model's alternative formulas
 PAIRS = 24  # number of direction pairs, each of which takes a millisecond
-GRAZING = 0.05  # smallest cosine; the direction SLANTED replaces grazing directions
+GRAZING = 0.05  # the direction SLANTED replaces directions with smaller cosines
 SLANTED = samples.float32([0.6, 0.0, 0.8])
 TILTED = (0.48, 0.36, 0.8)
 DIRECT, ENVIRONMENT = ("direct", "response", np.pi), ("environment", "response", 1.0)

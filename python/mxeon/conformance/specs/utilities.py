@@ -28,7 +28,7 @@ TYPES = {(): "float", (2,): "vector2", (3,): "color3"}  # input types by array s
 SHARES = (0.0, 1e-4, 1e-3, 0.5, 0.98, 0.99, 0.9999, 1.0)  # special values of most inputs
 PIGMENTS = (0.01, 0.5, 1.0)
 TEMPERATURES = (800.0, 1000.0, 1667.0, 2222.0, 4000.0, 6504.0, 25000.0)
-BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values inside and outside the range of most inputs
+BEYOND = (-1.0, 0.0, 0.5, 1.0, 2.0, 1e3)  # values inside and outside of most inputs' ranges
 # fmt: off
 # Inputs with special ranges.
 INPUTS = {
@@ -172,7 +172,7 @@ def _batch(inputs: Mapping[str, Array]) -> Batch:
 
 
 def _inversion(node: str) -> utilities.UtilityNode:
-    """A row for an inversion of EON. The variants are other inversions and the unchanged color."""
+    """A row for an inversion of EON, with other inversions and the unchanged color as variants."""
 
     def output(name: str) -> utilities.Outputs:
         function = getattr(diffuse, name)
