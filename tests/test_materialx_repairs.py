@@ -44,7 +44,7 @@ print(json.dumps(results))
 
 ISSUES = issues()
 PATCHES = ledger.patches("materialx")
-# Patches for the main branch, for defects that no pull request has repaired.
+# Patches of the main branch that repair defects which no pull request has repaired.
 OF_MAIN = [path for page, path in PATCHES.items() if not ISSUES[page].pull]
 # Pages on defects whose patched files differ on the main branch.
 CHANGED = re.findall(r"^--- a/.*$", MAIN.read_text(), re.MULTILINE)

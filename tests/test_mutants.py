@@ -27,7 +27,7 @@ SLICE = {
     "average: c2 1e-3 off": "output",
 }
 SHARE = 0.1  # tested fraction of the generated mutants
-# Some tasks run several checks: name of the task, by check.
+# Tasks that run several checks, by check.
 TASKS = {"languages": SOURCE, "densities": "twins"}
 
 

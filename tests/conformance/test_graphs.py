@@ -15,7 +15,7 @@ FILES = {
     "gltf_pbr": "bxdf/gltf_pbr.mtlx",
     "UsdPreviewSurface": "bxdf/usd_preview_surface.mtlx",
 }
-# Errors to put into graphs, by node category: the original text, the replacement, and words of the
+# Errors to put into graphs, by node category: the original code, the replacement, and words of the
 # expected diagnosis.
 WRONG = {
     "open_pbr_surface": (

@@ -24,7 +24,7 @@ COLOR82 = ("brushed_schlick_smooth", "brushed_schlick_rough")
 # Error relative to the larger of 1 and pi f cos. An argument has 16 float32 roundings. A microfacet
 # distribution amplifies the relative error of alpha by 4.
 GRAPH = 64 * 2.0**-24
-# Mutations of the generated OSL, by node title and check: the original text and its replacement.
+# Mutations of the generated OSL, by node title and check: the original code and its replacement.
 WRONG = {
     ("oren_nayar_diffuse_bsdf, energy_compensation true", "value"):
         ('"energy_compensation"', '"energy_conservation"'),

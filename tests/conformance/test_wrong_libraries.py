@@ -38,7 +38,7 @@ FLAG = "{{energy_compensation}}"
 
 @pytest.fixture
 def copy(tmp_path):
-    """Function that replaces a text in a copy of eonlib and returns the copy's path."""
+    """Function that replaces code in a copy of eonlib and returns the copy's path."""
     library = copy_of_eonlib(tmp_path)
 
     def edited(file="", old="", new=""):
@@ -50,7 +50,7 @@ def copy(tmp_path):
 
 
 def failed(results):
-    """Diagnosis texts of all failed results, by check."""
+    """Diagnoses of all failed results, by check."""
     return {each.check: said(each) for each in results if each.verdict == FAILED}
 
 
@@ -249,8 +249,8 @@ HALVED = (
     TOP.format("half")
     + '\n<input name="base" type="BSDF" nodename="metallic_mix" /></layer><multiply name="coat_half" type="BSDF"><input name="in1" type="BSDF" nodename="coat_bsdf" /><input name="in2" type="float" value="{}" /></multiply><layer name="unused" type="BSDF">'
 )
-# Changes of MaterialX. A row holds the file, the original text and the replacement. Further texts
-# must occur in the diagnosis: the node, a part of the node, the wrong value, the released value.
+# Changes of MaterialX: the file, the original code, and the replacement. The diagnosis must contain
+# the other fields: the node, a part of the node, the wrong value, the released value.
 CHANGED = {
     "mode of LamaConductor": (f"{BXDF}/lama/lama_conductor.mtlx", SWITCH.format("in1", "in2"), SWITCH.format("in2", "in1"), "LamaConductor", "in1 of eta_switch", "convert_ior"),
     "coat of Disney": (f"{BXDF}/disney_principled.mtlx", COAT.format("clearcoatGloss"), COAT.format("clearcoat"), "disney_principled", "in of coat_roughness", "the input clearcoat", "the input clearcoatGloss"),
@@ -353,8 +353,7 @@ LOSS = (
 )
 SIGNATURE = """void oren_nayar_diffuse_bsdf(ClosureData closureData, float weight, vec3 color, float roughness,
                              vec3 N, bool energy_compensation, inout BSDF bsdf)"""
-# Changes that leave eonlib's values unchanged: the changed files, the original text, and its
-# replacement.
+# Changes that leave eonlib's values unchanged: the files, the original code, the replacement.
 REWRITTEN = {
     "a comment with braces": (SHARED, "// A_F of", "// void main() { } } /* A_F of"),
     "a renamed variable": (SHARED, "sigma2", "squared_sigma"),

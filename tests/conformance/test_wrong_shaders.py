@@ -16,9 +16,9 @@ FILMED, HALF = "genglsl/lib/microfacet_film.glsl", "genglsl/lib/half_vector.glsl
 
 OPAQUE = "bsdf.throughput = vec3(1.0 - clamp(weight, 0.0, 1.0));"
 
-# Mutations of shaders by node title. Each row holds the file, the original text, the new text, the
+# Mutations of shaders by node title. Each row holds the file, the original code, the new code, the
 # check that detects the mutation, parts of one cause in the diagnosis, and the verdict unless the
-# verdict is "failed". In the new text, OLD stands for the original text.
+# verdict is "failed". In the new code, OLD stands for the original code.
 WRONG = {
     "oren_nayar_diffuse_bsdf, energy_compensation true": (
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness = max(roughness, 0.1);\n    OLD", "lambert",

@@ -126,7 +126,7 @@ def unjudged(root, found, targets=TARGETS):
 
 
 def _written(root, place):
-    """Text of a document in which the placeholder GAP is appended to an attribute."""
+    """XML of a document in which the placeholder GAP is appended to an attribute."""
     root = deepcopy(root)
     element = list(root.iter())[place.number]
     element.set(place.attribute, element.get(place.attribute, "") + GAP)
@@ -205,7 +205,7 @@ def _context(before):
 
 
 def _marked(root, places):
-    """Text of a document with a mark in each attribute in `places`, and the attributes by mark."""
+    """XML of a document with a mark in each attribute in `places`, and the attributes by mark."""
     root, marks, aliases = deepcopy(root), {}, {}
     elements = list(root.iter())
     for place in places:

@@ -45,7 +45,7 @@ LONG += tuple(f"{name}_{end}" for name in INTERFACES for end in ENDS)
 SEED = 11
 GRADIENT = 1e-7  # error of finite differences, divided by the larger of 1 and the gradient
 WIDTH = 1e-4  # step of the finite differences
-# Multiples of WIDTH: three single steps and three double steps on each side.
+# Offsets as multiples of WIDTH: three single steps and three double steps on each side.
 OFFSETS = (-6, -4, -3, -2, -1, 0, 1, 2, 3, 4, 6)
 RELIABLE = 2e-8  # largest difference of a reliable derivative between both step widths
 COMPARED = 0.6  # minimum fraction of partial derivatives that must be compared
@@ -116,7 +116,7 @@ def film_schlick(
 
 PORTABLE |= {each.__name__: each for each in (film_conductor, film_schlick)}
 COMPENSATED = ("dielectric_brdf", "conductor_brdf", "generalized_schlick_brdf")
-# Ends of tested ranges for inputs that are unbounded, or at whose limit a slope diverges.
+# Ends of tested ranges. These inputs are unbounded, or have an infinite slope at a limit.
 LOW = dict.fromkeys(("eumelanin_color", "pheomelanin_color", "hair_color"), 0.05)
 LOW |= dict.fromkeys(("separation", "radius", "reach"), 0.2)
 LOW |= {"temperature": 500.0, "melanin_concentration": 0.0}

@@ -32,7 +32,7 @@ def exact(mu, ior, extinction=0.0):
 
 
 def average(ior, extinction=0.0):
-    """Average reflectance by adaptive quadrature. Panels shrink towards the critical angle."""
+    """Average reflectance from adaptive quadrature. Panels shrink towards the critical angle."""
     split = min(max(mp.sqrt(1 - mp.mpc(ior, extinction) ** 2).real, 0), 1)
     steps = [mp.mpf(10) ** -k for k in (1, 2, 3, 4, 6, 8, 11)]
     points = {mp.mpf(0), mp.mpf(1), split}

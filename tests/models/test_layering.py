@@ -33,7 +33,7 @@ def test_a_sum_that_reflects_more_than_all_light_hides_what_lies_below():
 
 
 def tree(rng, depth):
-    """Random combination of lobes, and the albedo of the combination by the specified equations."""
+    """Random combination of lobes, and the albedo that the specified equations predict."""
     kind = rng.choice(("layer", "mix", "add", "multiply")) if depth else "lobe"
     if kind == "lobe":
         albedo = rng.random(3)

@@ -53,7 +53,7 @@ def pairs(count, seed=1):
 
 
 def fresnel_exact(name, c, channel):
-    """Fresnel reflectance by the equations in the specification, in 50 digits."""
+    """Fresnel reflectance, computed by the equations in the specification in 50 digits."""
     if name == "generalized_schlick_bsdf":
         r0, t, r90 = (mp.mpf(color[channel]) for color in COLORS)
         m = mp.mpf(1) / 7
@@ -74,7 +74,7 @@ def fresnel_exact(name, c, channel):
 
 
 def exact(name, wo, wi, roughness, channel):
-    """BRDF by the published equations in 50 digits, without compensation and tint."""
+    """BRDF without compensation and tint, computed by the published equations in 50 digits."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     ax, ay = (mp.mpf(float(alpha)) for alpha in roughness)
     h = [a + b for a, b in zip(wo, wi, strict=True)]

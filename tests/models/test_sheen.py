@@ -40,7 +40,7 @@ def test_conty_kulla_has_its_limit_at_roughness_0_and_where_the_half_vector_is_t
 
 
 def conty_kulla_exact(wo, wi, roughness):
-    """Conty-Kulla sheen by the published equations, in 50 digits."""
+    """Conty-Kulla sheen, computed by the published equations in 50 digits."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     half = [a + b for a, b in zip(wo, wi, strict=True)]
     cosine = half[2] / mp.sqrt(sum(x * x for x in half))
@@ -50,7 +50,7 @@ def conty_kulla_exact(wo, wi, roughness):
 
 
 def zeltner_albedo_exact(x, y):
-    """Albedo of Zeltner's sheen, by the published Gaussian fit, in 50 digits."""
+    """Albedo of Zeltner's sheen, computed by the published Gaussian fit in 50 digits."""
     c = [mp.mpf(number) for number in (0.0206607, 1.58491, 0.0379424, 1.32227)]
     s = y * (c[0] + c[1] * y) / (c[2] + y * (c[3] + y))
     c = [mp.mpf(number) for number in (0.193854, 1.14885, 1.7932, 0.95943, 0.046391)]
@@ -61,7 +61,7 @@ def zeltner_albedo_exact(x, y):
 
 
 def zeltner_exact(wo, wi, roughness):
-    """Zeltner's sheen by the published equations, in 50 digits.
+    """Zeltner's sheen, computed by the published equations in 50 digits.
 
     The published lobe D_o includes a cosine, so the function divides the lobe by the cosine of wi.
     """
@@ -81,7 +81,7 @@ def zeltner_exact(wo, wi, roughness):
 
 
 def burley_exact(wo, wi, roughness):
-    """Burley's diffuse model by the published equations, in 50 digits."""
+    """Burley's diffuse model, computed by the published equations in 50 digits."""
     wo, wi = ([mp.mpf(float(x)) for x in w] for w in (wo, wi))
     half = [a + b for a, b in zip(wo, wi, strict=True)]
     length = mp.sqrt(sum(x * x for x in half))

@@ -77,7 +77,7 @@ def grid():
 
 
 def text_xyz(orders):
-    """XYZ colors of the grid by the specified approximation, shape (..., 3)."""
+    """XYZ colors of the grid, computed by the specified approximation, shape (..., 3)."""
     mu, thickness, index, ior, extinction = grid()
     opd = formulas.path_difference(mu, thickness, index)
     both = formulas.over_index(mu, index, ior, extinction)

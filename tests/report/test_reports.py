@@ -247,7 +247,7 @@ def test_what_the_later_run_leaves_out_is_counted_if_it_is_much(tmp_path, capsys
 SCHLICK = "generalized_schlick_bsdf"
 ROUGH_NODE = "oren_nayar_diffuse_bsdf, energy_compensation true"
 LIGHT = "bsdf.response = diffuse *"
-# Regressions of MaterialX's GLSL: check, node title, file, original text and replacement. Most of
+# Regressions of MaterialX's GLSL: check, node title, file, original code and replacement. Most of
 # the regressions leave the largest error unchanged.
 PLANTED = {
     "a fifth of the light lost below half of the layers": (

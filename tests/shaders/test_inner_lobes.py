@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Materials with lobes below the surface are recognized. Rendering such a material warns."""
+"""Materials with lobes below the surface are recognized. A warning is printed when rendering."""
 
 from dataclasses import replace
 

@@ -62,7 +62,7 @@ def test_an_export_of_eonlib_has_its_verdicts(gl, tmp_path, part, name):
     assert tree(str(copy)).kind == OVERLAY
 
 
-# Faults in a copy: the file, the original text, its replacement, the node, the check that is
+# Faults in a copy: the file, the original code, its replacement, the node, the check that is
 # reported first, and words of the message.
 FAULTS = {
     "a file of lib": (LIB, "D = mx_", "D = 3.0 * mx_", "sheen_bsdf", "value", "3 times the right"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small material documents as text, for the tests of reading, generation and rendering."""
+"""Small material documents as XML, for the tests of reading, generation and rendering."""
 
 import pytest
 
@@ -19,17 +19,17 @@ from mxeon.shaders.nodes import (
 
 
 def material(nodes):
-    """Text of a document with a material whose BSDF is the node named `lobe`."""
+    """XML of a document with a material whose BSDF is the node named `lobe`."""
     return document_text(nodes + SURFACE)
 
 
 def lobe(category=OREN_NAYAR, name="lobe", **inputs):
-    """Text of a lobe, rough diffuse by default, with the given input values."""
+    """XML of a lobe, rough diffuse by default, with the given input values."""
     return lobe_text(category, inputs, name)
 
 
 def surface(category, **inputs):
-    """Text of a document with a surface shader and the given input values."""
+    """XML of a document with a surface shader and the given input values."""
     definitions = load_library("stock").getMatchingNodeDefs(category)
     ports = "".join(
         input_text(name, definitions[0].getActiveInput(name).getType(), value)
@@ -39,7 +39,7 @@ def surface(category, **inputs):
 
 
 def connected(name="lobe", **inputs):
-    """Text of a rough diffuse node whose inputs have the given XML attributes."""
+    """XML of a rough diffuse node whose inputs have the given XML attributes."""
     ports = "".join(
         f'<input name="{each}" type="{INPUT_TYPES[each]}" {attributes}/>'
         for each, attributes in inputs.items()
@@ -54,7 +54,7 @@ def written(folder, text):
 
 
 def including(file):
-    """Text of a document that includes another document by XInclude."""
+    """XML of a document that includes another document by XInclude."""
     include = f'<xi:include href="{file}"/>'
     space = "http://www.w3.org/2001/XInclude"
     return f'<materialx version="1.39" xmlns:xi="{space}">{include}</materialx>'
@@ -74,7 +74,7 @@ def image(file, name="image"):
 
 
 def textured(files):
-    """Text of a document whose material has the sum of several images as its color."""
+    """XML of a document whose material has the sum of several images as its color."""
     add = (
         '<add name="s{0}" type="color3"><input name="in1" type="color3" nodename="{1}"/>'
         '<input name="in2" type="color3" nodename="i{0}"/></add>'

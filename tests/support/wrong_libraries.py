@@ -18,7 +18,7 @@ def copy_of_eonlib(folder):
 
 
 def replace_text(folder, old, new, *files):
-    """Replace a text everywhere in the given files. At least one file must contain the text."""
+    """Replace `old` everywhere in the given files. At least one file must contain `old`."""
     texts = {folder / file: (folder / file).read_text(encoding="utf-8") for file in files}
     assert any(old in text for text in texts.values())
     for path, text in texts.items():
@@ -43,7 +43,7 @@ def copy_of_stock(folder, *parts):
 
 
 def wrong_stock(folder, file, *changes):
-    """Path of a library with a single file of MaterialX, in which texts are replaced."""
+    """Path of a library with a single file of MaterialX, in which code is replaced."""
     copy_of_stock(folder, file)
     for old, new in changes:
         replace_text(folder, old, new, file)
@@ -51,7 +51,7 @@ def wrong_stock(folder, file, *changes):
 
 
 def wrong_stock_node(folder, name, old, new):
-    """Path of a library with only the GLSL of one MaterialX node, in which a text is replaced."""
+    """Path of a library with only the GLSL of one MaterialX node, in which code is replaced."""
     file = name if name.endswith(".glsl") else f"mx_{name}.glsl"
     if not (STOCK / GLSL / file).is_file():  # several nodes may share a file
         rows = (STOCK / GLSL / "pbrlib_genglsl_impl.mtlx").read_text(encoding="utf-8")
@@ -60,7 +60,7 @@ def wrong_stock_node(folder, name, old, new):
 
 
 def wrong_library(folder, file, old, new):
-    """Path of a library with a text replaced in `file`.
+    """Path of a library with code replaced in `file`.
 
     The library is a copy of eonlib. If `file` is a name without a folder, the library contains only
     this GLSL file of MaterialX.
