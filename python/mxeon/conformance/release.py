@@ -63,7 +63,7 @@ LOBES = {"BSDF": "burley_diffuse_bsdf", "EDF": "uniform_edf"}  # lobes connected
 ZEROS = {"float": "0", "integer": "0", "boolean": "false"}
 ZEROS |= {"vector2": "0, 0", "color3": "0, 0, 0", "vector3": "0, 0, 1"}
 TANGENT = "1, 0, 0"
-PROBE = "mxeon_probe"  # name of a node that computes a port of a graph
+PROBE = "mxeon_probe"  # name of a node that computes the value of a port
 MODELLED = {(each.node, isinstance(each, utilities.UtilitySpec)) for each in ALL}
 Place: TypeAlias = tuple[mx.GraphElement, mx.PortElement]  # a graph and a port in that graph
 
@@ -206,7 +206,7 @@ class Comparison:
         self.unjudged: list[tuple[str, str]] = []
 
     def definitions(self, changed: bool = False) -> list[Cause]:
-        """Differences of definitions, units and properties.
+        """Differences from the release in definitions, units and properties.
 
         Nodes that eonlib defines are also compared with eonlib's definitions. If `changed`, a
         difference is added as a negative control.

@@ -40,13 +40,13 @@ Changes: TypeAlias = tuple[Values, Values]  # inputs before and after a change o
 class Counts:
     """Numbers of samples that a spec draws."""
 
-    pairs: int = PAIRS  # random pairs
-    few: int = FEW  # random pairs in negative controls and in expensive checks
-    diagnosed: int = FEW  # pairs per batch in a diagnosis
-    albedos: int = 1 << 7  # views whose albedos are measured
-    materials: int = 64  # materials in checks of integrals and averages
-    nodes: int = 48  # quadrature nodes per axis
-    mirrored: int = 1 << 11  # views with lights near the mirror direction
+    pairs: int = PAIRS  # number of random pairs
+    few: int = FEW  # number of random pairs in negative controls and in expensive checks
+    diagnosed: int = FEW  # number of pairs per batch in a diagnosis
+    albedos: int = 1 << 7  # number of views whose albedos are measured
+    materials: int = 64  # number of materials in checks of integrals and averages
+    nodes: int = 48  # number of quadrature nodes per axis
+    mirrored: int = 1 << 11  # number of views with lights near the mirror direction
 
     def varied(self) -> "Counts":
         """Counts reduced by up to 1/8. The seed determines how much, so shaders cannot guess."""
@@ -158,7 +158,7 @@ AZIMUTHS = (0.0, 0.5 * np.pi, np.pi)
 ABOVE_ONE = 1.0 + 2.0**-23  # cosine of equal unit vectors after one upward float32 rounding
 HORIZON = 0.1  # smallest cosine of a direction if the other direction is on or below the horizon
 POLE = 0.99  # largest |y| of normals in rotated frames, which excludes the poles of the sky map
-TURNED = (0.25, 0.95)  # cosines in rotated frames, away from 0 and 1, where roundings matter
+TURNED = (0.25, 0.95)  # range of cosines in rotated frames; roundings matter near 0 and 1
 LEAST_SHEEN = 0.01  # smallest sheen roughness; the Zeltner model clamps smaller values
 LEAST_COLOR82 = 0.5  # smallest color82 of lobes with measured albedos; see docs/loading.md
 LEAST_TURNED = 0.1  # smallest roughness of microfacets in rotated frames

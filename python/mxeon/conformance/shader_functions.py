@@ -36,7 +36,7 @@ class FunctionCheck(NamedTuple):
 
     key: str  # a single word
     claim: str  # a full sentence
-    names: str  # pattern of function names, where the first matching row applies
+    names: str  # pattern of function names; the first row that matches a function applies
     error: tolerance.Tolerance
     turns: bool = False  # whether the functions rotate vectors with the engine's sine and cosine
 
@@ -108,7 +108,7 @@ def arguments(function: str) -> list[str]:
     return ["gray" if each == ("float", "rho") else each[1] for each in parameters]
 
 
-POINTS = 4096  # points per function
+POINTS = 4096  # number of points per function
 CORNERS = 64  # number of points with arguments at the ends of their ranges
 
 # Two directions along the normal (cosines 1 and 1 + 2^-23), two on the horizon, and one oblique.
@@ -117,7 +117,7 @@ AXES = tuple((x, 0.0, z) for x, z in ((0, 1), (0, 1 + 2.0**-23), (1, 0), (-1, 0)
 Columns = Mapping[str, Array]
 
 
-# NumPy functions by shader function, if the name or the order of the arguments differs.
+# For each shader function whose NumPy version has another name or argument order, the version.
 NAMED: Mapping[str, Callable[..., Array | tuple[Array, ...]]] = {
     "eon_around": sampling.around,
     "eon_azimuth_frame": lambda wo: sampling.stack_xyz(*sampling.azimuth_frame(wo)),

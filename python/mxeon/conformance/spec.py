@@ -361,7 +361,7 @@ class RowSpec(ValueSpec, Generic[F]):
 
     @property
     def others(self) -> tuple[Candidate, ...]:
-        """Functions that may explain the values and are not in the row of the models' table."""
+        """Functions that may explain the values but are not in the row of the models' table."""
         return ()
 
     @property

@@ -182,7 +182,7 @@ class Tolerance:
         return replace(self, terms=(*self.terms, *terms))
 
     def term(self, words: str, factor: float = 1.0) -> Term:
-        """A term for another tolerance, whose value is this tolerance's value times `factor`."""
+        """A term with this tolerance's value times `factor`, to be added to another tolerance."""
         return Term(factor * self.value, words)
 
     def scale(self, expected: Array) -> Array:

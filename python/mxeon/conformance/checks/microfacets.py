@@ -525,7 +525,7 @@ THIN_LIMIT = 1e-3  # thickness in nm at which a film must have no effect
 
 
 def curves(films: microfacets.Films, case: Case) -> Compared:
-    """F of films, which is the value in the mirror direction divided by a perfect mirror's value.
+    """F of films: the value in the mirror direction, divided by the value of a perfect mirror.
 
     The lobes are so smooth that compensation has no effect.
     """

@@ -448,7 +448,7 @@ def pcg4d(state: NDArray[np.uint32]) -> NDArray[np.uint32]:
 
 
 def path_random(case: Case) -> Iterator[Compared]:
-    """Random numbers compared with pcg4d [Jarzynski2020], bit for bit."""
+    """Compare random numbers with pcg4d [Jarzynski2020], bit for bit."""
     counters = np.arange(3 * 256).reshape(-1, 3) ** 2
     [(text, _)] = subjects(case)
     state = np.insert(counters, 3, 7, axis=1).T.astype(np.uint32)

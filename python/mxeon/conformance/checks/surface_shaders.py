@@ -71,7 +71,7 @@ SURFACES, SUM = family(SurfaceShaderSpec), defect("sum_of_lobes")
 
 
 def values(case: Case) -> Compared:
-    """Values compared with the layer equation.
+    """Compare values with the layer equation.
 
     Shaders fit anisotropic lobes less accurately. The error of a pair with an anisotropic lobe is
     therefore multiplied by VALUE_ERROR / STRETCHED_FIT. If the mean error of all pairs with

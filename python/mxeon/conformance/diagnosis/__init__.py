@@ -53,8 +53,8 @@ REMAINING = 0.1  # smallest share of the light that must remain after a cure
 # An explanation is complete if the distance between explained and measured values is below SAME
 # times the distance of every other explanation. For a near explanation, the factor is NEAR.
 SAME, NEAR = 0.03, 0.3
-FAR = 0.2  # a near model has at most this fraction of the expected model's distance
-NAMED = 0.5  # largest distance of a reported model, as a fraction of the distance of black values
+FAR = 0.2  # a near model is at most this fraction of the expected model's distance from the values
+NAMED = 0.5  # largest distance of a reported model from the values; black values have distance 1
 INEXACT = 30.0  # errors up to 30 times the tolerance count as inaccuracy of the expected model
 LEAST_LIGHT = 1e-3  # smallest cosine of the light that shows which fault changes the cosine
 

@@ -42,7 +42,7 @@ OTHERS = (node("burley"), node("translucent"), HAIR_NODE)
 BY_CLOSURE = (
     MICROFACETS | {row.category: row for row in OTHERS} | {"subsurface_bssrdf": SUBSURFACE_NODE}
 )
-# Closures with two models, selected by a keyword argument that is 0 by default.
+# Closures with two models. A keyword argument, by default 0, selects the model.
 FLAGGED = {
     OREN_NAYAR: (FLAG, (DIFFUSE[False], DIFFUSE[True])),
     "sheen_bsdf": ("mode", (node("conty_kulla"), node("zeltner"))),

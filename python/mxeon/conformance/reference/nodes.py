@@ -121,11 +121,11 @@ def _blur(reach: float) -> Array:
     return diffusion_blur(COSINES, reach)
 
 
-# For each row's name, a function for the share of a uniform environment that the node transmits.
+# For each row's name, a function that returns the transmitted share of a uniform environment.
 LET_THROUGH: dict[str, Callable[[Array, Inputs], Array]] = {
     row.name: partial(_not_reflected, row.category) for row in TRANSMISSION_NODES
 }
-# For each node category, the albedo of an anisotropic lobe in MaterialX's environment sum.
+# For each node category, the albedo that MaterialX's environment sum finds for two alphas.
 SUMS: dict[str, Callable[[Array, Inputs], Array]] = {
     row.category: partial(node_albedo, row.category, summed=True) for row in MICROFACET_NODES
 }

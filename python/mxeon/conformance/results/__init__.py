@@ -82,7 +82,7 @@ class Control:
 class Kind(Enum):
     NONE = ""
     MODEL = "model"  # the known model or defect nearest to the values
-    FAULT = "fault"  # a wrong use of the correct model that reproduces the values
+    FAULT = "fault"  # a wrong use of the correct model, by which the values are reproduced
     ACCURACY = "accuracy"  # insufficient accuracy of the correct model
     REGION = "region"  # values are wrong in the cause's region
     NOT_FINITE = "not finite"  # values are NaN or infinite in the cause's region

@@ -47,7 +47,7 @@ class Issue:
     # Host that shows the defect, by default "gl". Defects of generated shader code have the host
     # "source". Defects that no check shows have the host "".
     host: str = ""
-    also: tuple[str, ...] = ()  # other hosts with the defect; "gl" implies GENERATED_GLSL
+    also: tuple[str, ...] = ()  # other hosts with the defect; "gl" implies all of GENERATED_GLSL
     # Library whose results show the defect: EONLIB for a defect of graphs, because graphs need
     # correct lobes, and RENDERER_NODES for a defect of a renderer's own nodes.
     library: str = STOCK

@@ -51,7 +51,7 @@ MASKED = {
     "both": over("mix", "masked", "other", text=nodes.connection_text("mix", "float", "outer")),
     "lobe": over("layer", "both", "base"),
 }
-# Title of each row of `mxeon.models.nodes.combinations`, and the nodes that combine lobes.
+# For each row of `mxeon.models.nodes.combinations`, a title and the nodes that combine lobes.
 # fmt: off
 NETWORKS: dict[str, tuple[str, dict[str, nodes.Node]]] = {
     "layer": ("layer", {"lobe": over("layer", "top", "base")}),

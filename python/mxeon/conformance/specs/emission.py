@@ -26,7 +26,7 @@ def title_of(row: emissions.Emission | Medium, kind: str) -> str:
 
 
 def inputs_of(row: emissions.Emission | Medium) -> tuple[Input, ...]:
-    kind = row.name.rpartition("_")[2]  # type of the factor of a node `multiply`
+    kind = row.name.rpartition("_")[2]  # type of the factor by which a node `multiply` scales
     return tuple(INPUTS.get(name) or FACTORS[name, kind] for name in row.inputs)
 
 
