@@ -221,7 +221,7 @@ def test_a_click_probes_a_point(page):
     shows(page, probe=None)
 
 
-SHADER = 64 * 2**-24  # relative error of a shader's value: at most 64 float32 roundings
+SHADER = 64 * 2**-24  # relative error of a shader's value with at most 64 float32 roundings
 # JavaScript that returns the texts of the table's rows, or false until both shaders have values.
 READ = """(() => {
     const rows = [...document.querySelectorAll('.values tbody tr')].map(

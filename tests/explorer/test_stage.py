@@ -18,7 +18,7 @@ from tests.explorer.browser import until
 from tests.explorer.stage import opened_stage, picture, side, view
 from tests.support.tolerances import EON_WEIGHT, TWIN_ALBEDO, TWIN_VALUE
 
-PLAIN = 48 * 2.0**-24  # 16 roundings in a point of the sphere, plus 32 in the point's value
+PLAIN = 48 * 2.0**-24  # a point of the sphere has 16 roundings, and the value has 32
 ROWS = DIFFUSE_MODELS + KNOWN_DEFECTS
 
 

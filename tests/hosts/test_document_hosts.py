@@ -22,8 +22,8 @@ HOSTS = {"storm": storm.StormHost, "materialx": materialx.MaterialXHost}
 DOCUMENT = examples_folder() / "eon_node.mtlx"
 SMALL = replace(FRONT, size=16)
 EON = "oren_nayar_diffuse_bsdf, energy_compensation true"
-# Errors of pixels stored as half floats: two roundings of 2^-11 in direct light, and four in an
-# environment.
+# Errors of pixels stored as half floats. Direct light has two roundings of 2^-11, and light from an
+# environment has four.
 HALF, HALF_SURROUNDINGS = 2.0**-10 + 248 * 2.0**-24, 2.0**-9 + 2e-6
 TEXTURED = 2.0**-8  # precision of filter weights that OpenGL guarantees
 

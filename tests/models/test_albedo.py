@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Albedos and their inverses: limits, invariants, and agreement with quadrature and with mpmath."""
+"""Albedos and their inverses have the right limits, and match quadrature and mpmath."""
 
 import mpmath as mp
 import numpy as np

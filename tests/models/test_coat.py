@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EON under a dielectric interface and under a varnish: albedos, limits, and random walks.
+"""EON under a dielectric interface or a varnish has the right limits, and matches random walks.
 
 Seeds are fixed. With random seeds, the comparisons with random walks would fail by chance with the
 probability FALSE_ALARM.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fresnel reflectances and their averages: limits, invariants, and 50-digit arithmetic."""
+"""Fresnel reflectances and their averages have the right limits, and match 50-digit arithmetic."""
 
 import mpmath as mp
 import numpy as np

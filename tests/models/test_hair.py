@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hair: normalization, white furnace, and agreement with 50-digit arithmetic and with Mitsuba."""
+"""Hair lobes are normalized, lose no light, and match 50-digit arithmetic and Mitsuba."""
 
 import itertools
 
@@ -21,7 +21,7 @@ from mxeon.models.nodes.lobes import FORMS, READINGS, TILTED, materialx_longitud
 from tests.support.availability import package
 from tests.support.hemispheres import sphere
 
-ROUND = 1e-14  # relative error: about 45 float64 roundings
+ROUND = 1e-14  # relative error of about 45 float64 roundings
 PICK = {"roughness_R": (0.5, 0.6), "roughness_TT": (0.3, 0.4), "roughness_TRT": (0.8, 0.9)}
 VIEWS = np.array([[0.0, 0.0, 1.0], [0.6, 0.3, 0.0], [-0.95, -0.2, 0.0]])
 VIEWS[:, 2] = np.sqrt(1.0 - (VIEWS[:, :2] ** 2).sum(axis=1))

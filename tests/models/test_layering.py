@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Layering operators: albedos, identities, and sums of lobes whose albedo exceeds 1."""
+"""Layering operators return the specified albedos, even if the albedo of a sum exceeds 1."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from mxeon.models.core.layering import Bsdf, add, layer, mix, multiply, throughp
 # Lobes with albedo E, whose value is E and whose throughput is 1 - E. All numbers are multiples of
 # 1/64, so the sums and products below are exact.
 A, B = (Bsdf(np.array(e), throughput(e)) for e in ([0.25, 0.5, 0.0], [0.5, 0.125, 1.0]))
-TREE = 1e-13  # error in trees with 6 levels: twice 400 roundings
+TREE = 1e-13  # error of trees with 6 levels, at most twice 400 roundings
 NOTHING, BLACK = Bsdf(np.zeros(3), np.ones(3)), Bsdf(np.zeros(3), np.zeros(3))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Participating media, emission and diffusion: published equations, limits, and wrong variants."""
+"""Media, emission and diffusion match the published equations and have the right limits."""
 
 import numpy as np
 import pytest

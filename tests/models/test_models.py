@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diffuse models: limits, invariants, 50-digit arithmetic, ends of input ranges, and arrays."""
+"""Diffuse models have the right limits, match 50-digit arithmetic, and accept arrays."""
 
 import tracemalloc
 

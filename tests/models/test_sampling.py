@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samplers: limits, invariants, agreement of samples with densities and models, and weights.
+"""Samplers have the right limits, and samples match the densities, the models and the weights.
 
 Seeds are fixed. With random seeds, some chi-square test of this file would fail by chance with the
 probability FALSE_ALARM, which is divided equally among the comparisons.

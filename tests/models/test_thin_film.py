@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Thin films: limits, the transfer-matrix method, and errors of the specified approximation."""
+"""Thin films match the transfer-matrix method. The specified approximation has known errors."""
 
 from dataclasses import replace
 

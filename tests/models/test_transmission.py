@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Microfacet BTDF: limits, invariants, and agreement with quadrature and Mitsuba."""
+"""Microfacet BTDFs have the right limits, and match quadrature and Mitsuba."""
 
 import numpy as np
 import pytest

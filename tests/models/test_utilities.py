@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Utility nodes that compute inputs of lobes: limits, inverses and domains."""
+"""Utility nodes that compute inputs of lobes have the right limits, inverses and domains."""
 
 import numpy as np
 import pytest

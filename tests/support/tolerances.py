@@ -21,7 +21,7 @@ BRDF = (60 + 4 * FUNCTION) * ROUNDING
 # 7 roundings and a function call.
 LOSS = (7 + FUNCTION) * ROUNDING
 
-# Absolute difference between a closed-form albedo <= 1.05 and its quadrature by 128 x 128 terms.
+# Absolute difference between a closed-form albedo <= 1.05 and a quadrature with 128 x 128 terms.
 # Each term has 20 roundings, partial sums have 130 roundings, and each of 64 nodes and weights has
 # an error of 1e-14.
 QUADRATURE = (20 + 130) * ROUNDING * 1.05 + 64 * 1e-14
@@ -35,7 +35,7 @@ ONE_ROUNDING = 2.0 * ROUNDING
 SHEEN = (40 + 2 * FUNCTION + 10) * ROUNDING
 
 # Error of a BRDF after a rotation about the normal. The rotation rounds each component three times,
-# and the error of s grows by the 9 roundings of S_o S_i.
+# and the error of s grows by the 9 roundings of the product S_o S_i.
 ROTATION = BRDF + 12.0 * ROUNDING
 
 # Absolute errors of the approximate loss, [Portsmouth2025], Eq. (14), and of functions of the loss.
@@ -66,8 +66,8 @@ EON_DENSITY = 1.3e-5
 EON_WEIGHT = 5e-5
 EON_VARIANCE = 1e-9
 
-# Relative error of the arc tangent below tan(pi / 8): the error of the fit, plus the error caused
-# by the eight decimals of the coefficients.
+# Relative error of the arc tangent below tan(pi / 8). The first term is the error of the fit. The
+# second term is caused by the eight decimals of the coefficients.
 FIT_ANGLE = 1.9e-8 + 0.6e-8
 
 # --- shader twins, float32 against float64 ---------------------------------------------------
@@ -79,12 +79,12 @@ TWIN_VALUE = 2e-6
 # sum of a ray's origin and a vector along the ray, both of length <= 2, and has three roundings.
 CYCLES_NORMAL = 3 * 2.0 * ROUNDING_32
 
-# Relative error of a picture of EON where both cosines exceed 0.1: 6 roundings divided by the
-# product of both cosines, plus an error of 1e-5 due to the roughness.
+# Relative error of a picture of EON where both cosines exceed 0.1. Six roundings are divided by the
+# product of both cosines, and the roughness adds an error of 1e-5.
 CYCLES_RIM = 0.1
 CYCLES_EON_RELATIVE = 6 * ROUNDING_32 / CYCLES_RIM**2 + 1e-5
 
-# Error of the mean of 3212 pixels in an environment: four standard deviations, rounded up.
+# Four standard deviations of the mean of 3212 pixels in an environment, rounded up.
 CYCLES_FURNACE_MEAN = 2e-4
 
 # Error of the mean of 208 pixels of a subsurface sphere under a uniform sky. The first term is the
@@ -128,9 +128,9 @@ RIM = (0.5 * (4 + 6) + 1) * ROUNDING
 # most 1 and have 4 roundings, a function call, and the error RIM.
 LUNE = (4 + FUNCTION) * ROUNDING + RIM
 
-# Absolute error of the integral of a density with a kink: h^2 / 12 per unit of length. The
-# boundary of CLTC, at most pi long, crosses Gauss panels whose nodes are h <= pi/2 / 64 apart.
-# At the boundary, the slope of the density jumps by at most 1 per steradian and radian.
+# Absolute error of the integral of a density with a kink. A kink adds h^2 / 12 per unit of length.
+# The boundary of CLTC, at most pi long, crosses Gauss panels with nodes h <= pi/2 / 64 apart. At
+# the boundary, the slope of the density jumps by at most 1 per steradian and radian.
 KINK_QUADRATURE = (pi / 2 / 64) ** 2 / 12 * pi
 
 # RHO is the relative error of an inverted albedo, which has at most 11 roundings. ROUND_TRIP also
@@ -141,7 +141,7 @@ ROUND_TRIP = 1e-14
 
 # --- pictures ----------------------------------------------------------------------------------
 
-# Error of an OpenGL picture times cos(theta_o): 16 roundings in a pixel's point, 32 in the value.
+# Error of an OpenGL picture times cos(theta_o). Points have 16 roundings, and values have 32.
 PICTURE = (16 + 32) * ROUNDING_32
 
 # Maximum number of kits that may be judged biased, among 200 kits with pure noise. Each kit has a
@@ -160,8 +160,8 @@ PRINTED = 0.05 + 0.05 + 0.01
 
 # --- microfacet and sheen nodes ------------------------------------------------------------------
 
-# Errors of the fits of E_ss and of the Conty-Kulla albedo: the documented errors, plus the error of
-# the quadrature.
+# Errors of the fits of E_ss and of the Conty-Kulla albedo. The first term is the documented error,
+# and the second term is the error of the quadrature.
 FIT_GGX = 4.92e-4 + 1e-6
 FIT_CONTY_KULLA = 1.51e-3 + 1e-5
 
@@ -184,7 +184,7 @@ CONDUCTOR = 1e-12
 E_SS = 1e-10
 E_SS_SMALL = 2e-8
 SLOPES = 5e-6
-# Error of an albedo for an index of refraction below 1: 100 times the error of adaptive quadrature.
+# Albedos for an index of refraction below 1 have 100 times the error of adaptive quadrature.
 SPLIT = 100 * 1e-13
 
 # --- transmission, float64 ---------------------------------------------------------------------
@@ -201,7 +201,7 @@ REVERSED = 5e-5
 
 # --- Mitsuba, float32 --------------------------------------------------------------------------
 
-# Relative error of a BTDF: 64 roundings, which D may amplify by 1 / alpha, where alpha is 0.3.
+# Relative error of a BTDF with 64 roundings, which D may amplify by 1 / alpha = 1 / 0.3.
 MITSUBA_BTDF = 64 * ROUNDING_32 / 0.3
 
 # Errors of EON, FON and QON. MITSUBA_EVAL is the error of a value times the cosine. The product is
