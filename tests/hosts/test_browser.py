@@ -97,7 +97,7 @@ def test_a_page_that_throws_goes_on_and_one_that_hangs_is_ended(tmp_path):
     # The host itself answers every request of the page, so nothing reaches the network.
     assert page.ask({"task": "fetch"})["status"] in (0, 404)
     page._limit = 1000.0  # milliseconds, enough because the browser has started
-    with pytest.raises(NotRun, match="^three: the browser fails; .*1000ms"):
+    with pytest.raises(NotRun, match="^three: the browser failed; .*1000ms"):
         page.ask({"task": "hang"})
     assert page._page is None
 

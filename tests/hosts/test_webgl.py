@@ -24,7 +24,7 @@ def started():
 def test_a_browser_that_hangs_is_not_run_and_the_next_one_works():
     host = started()
     host._limit = 1000.0  # milliseconds, enough because the browser has started
-    with pytest.raises(NotRun, match="webgl: the browser fails; .*[Tt]imeout"):
+    with pytest.raises(NotRun, match="webgl: the browser failed; .*[Tt]imeout"):
         host._ask("() => { for (;;); }")
     host._limit *= 300.0
     assert host.call("fon_albedo_dir", MU, np.array([0.0])).tolist() == [[1.0, 1.0, 1.0]]
