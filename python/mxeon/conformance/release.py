@@ -10,7 +10,7 @@ additional nodes in MaterialX's own documents may be a newer version, so differe
 are permitted.
 """
 
-from collections.abc import Collection, Container, Hashable, Iterator, Sequence
+from collections.abc import Collection, Hashable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -188,22 +188,16 @@ def differing_ports(terms: Terms, own: Place, released: Place) -> Iterator[tuple
 class Comparison:
     """Compares a library with the release. A host evaluates nodes whose source code differs."""
 
-    def __init__(
-        self,
-        host: Host,
-        library: str,
-        release: mx.Document,
-        image: str,
-        nodes: Container[str] = (),  # categories to compare; () for all
-    ) -> None:
+    only: Collection[str] = ()  # categories of the nodes to compare; () for all
+
+    def __init__(self, host: Host, library: str, release: mx.Document, image: str) -> None:
         self._host, self._library, self._release, self._image = host, library, release, image
-        self._nodes = nodes
-        self._compared = [
-            each for each in release.getNodeDefs() if not nodes or each.getNodeString() in nodes
-        ]
         self._document = load_library(library)
         self._target = generators.GENERATORS[host.target].create().getTarget()
         self.unjudged: list[tuple[str, str]] = []
+
+    def _requested(self, *definitions: mx.NodeDef) -> list[mx.NodeDef]:
+        return [each for each in definitions if not self.only or each.getNodeString() in self.only]
 
     def definitions(self, changed: bool = False) -> list[Cause]:
         """Differences from the release in definitions, units and properties.
@@ -212,14 +206,9 @@ class Comparison:
         difference is added as a negative control.
         """
         release, eonlib = self._release, load_library("eonlib").getNodeDefs()
-        additional = (
-            each
-            for each in eonlib
-            if release.getNodeDef(each.getName()) != each
-            if not self._nodes or each.getNodeString() in self._nodes
-        )
+        additional = (each for each in eonlib if release.getNodeDef(each.getName()) != each)
         rows: list[str] = []
-        for number, reference in enumerate((*self._compared, *additional)):
+        for number, reference in enumerate(self._requested(*release.getNodeDefs(), *additional)):
             name = reference.getName()
             own, released = (each.getNodeDef(name) for each in (self._document, release))
             if own is None or (number and own in (reference, released)):
@@ -234,7 +223,7 @@ class Comparison:
                     if each.startswith(RANGE) and not facts[each]:
                         facts[each] = expected[each]
             rows += differences(facts, expected)
-        if not self._nodes:
+        if not self.only:
             rows += differences(*(unit_facts(each, release) for each in (self._document, release)))
         triples = dict.fromkeys(zip(rows[::3], rows[1::3], rows[2::3], strict=True))
         return [Cause(Kind.DEFECT, RELEASE, ("", *each)) for each in triples]
@@ -246,7 +235,7 @@ class Comparison:
         If several nodes differ by the same change of code or share a graph, only the first node
         with different values is reported.
         """
-        names = (definition.getName() for definition in self._compared)
+        names = (each.getName() for each in self._requested(*self._release.getNodeDefs()))
         groups = grouped(names, self._change)
         groups.pop(None, None)
         causes: list[Cause] = []
@@ -552,7 +541,8 @@ def check_release(
     with TemporaryDirectory() as folder:
         image = str(Path(folder, "image.exr"))  # an image with four different channels
         write_exr(image, generator().random((8, 8, 4), np.float32), {})
-        comparison = Comparison(host, library, release, image, nodes)
+        comparison = Comparison(host, library, release, image)
+        comparison.only = nodes
 
         def measure(wrong: bool) -> Measurement:
             causes = [*comparison.definitions(wrong), *([] if wrong else comparison.nodes)]

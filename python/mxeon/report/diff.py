@@ -243,10 +243,7 @@ def _group(change: Change) -> tuple[str, str, str, str]:
 
 
 def lines(changes: Sequence[Change]) -> Iterator[str]:
-    """Format sorted changes as text, grouped by kind, host and library, then by subject.
-
-    If a run leaves out much of the other run, only the number of these changes is stated.
-    """
+    """Format sorted changes as text, grouped by kind, host and library, then by subject."""
     out = [each for each in changes if each.kind == OTHER and each.after in ("none", "removed")]
     tally = Counter(each.kind for each in changes)
     if len(out) > LISTED:
