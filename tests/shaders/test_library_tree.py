@@ -70,7 +70,7 @@ FAULTS = {
         f"{GLSL}/pbrlib_genglsl_impl.mtlx",
         'file="mx_layer_bsdf.glsl" function="mx_layer_bsdf"',
         'file="mx_add_bsdf.glsl" function="mx_add_bsdf"',
-        *("layer", "combination", " % of view/light pairs"),
+        *("layer", "combination", "a base that receives all light"),
     ),
 }
 
