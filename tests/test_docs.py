@@ -41,7 +41,7 @@ NAME = re.compile(r"`(mxeon(?:\.\w+)+)")
 
 
 def prose():
-    """Texts of all pages by file. The changelog is left out, because it names removed features."""
+    """Contents of all pages by file, without the changelog, which names removed features."""
     files = [ROOT / name for name in PROSE if name != "CHANGELOG.md"]
     files += sorted((ROOT / "docs").rglob("*.md"))
     return {file: file.read_text(encoding="utf-8") for file in files}

@@ -30,7 +30,7 @@ LARGEST_DEVIATE, FITS, SPREAD = 4.5, 24, (0.7, 1.3)
 
 
 def noisy(rng, model, parameters, count=200, known=True):
-    """Invented measurement with normal noise. If `known`, the data state the size of the noise."""
+    """Simulated measurement with normal noise. If `known` is true, the data state the noise."""
     wo, wi = directions((2, count), rng, least=0.05)
     value = mxeon.model(model).brdf(wo, wi, **parameters)
     error = NOISE * (value if known else np.full_like(value, 0.2))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Fitted coefficients have their stated errors, and scripts reproduce fits of the loss and angle.
+"""Fitted coefficients have the stated errors, and scripts reproduce fits of the loss and angle.
 
 The scripts compute with 40 digits. A different digit therefore means a different fit, not a
 different machine.

@@ -90,7 +90,7 @@ def content(folder):
 
 
 def refused(arguments, folder, capsys):
-    """Assert that a command is refused with one line and changes no file; return the line."""
+    """Assert that a command prints a one-line refusal and changes no file. Return the line."""
     before = content(folder)
     assert main(arguments) == MISUSE
     assert content(folder) == before

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A signal ends a command with one line and the usual exit status, and leaves no files behind."""
+"""After a signal, a command prints one line, exits with the usual status, and leaves no files."""
 
 import os
 import signal

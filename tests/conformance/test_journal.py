@@ -86,7 +86,7 @@ def test_a_task_whose_picture_is_damaged_is_done_again(tmp_path, content):
 
 
 def refused(folder):
-    """Assert that an invalid journal is refused with one line, and return the message."""
+    """Assert that an invalid journal is refused with a one-line message, and return the message."""
     with pytest.raises(ValueError, match=f"{JOURNAL}: must be a journal of format 10") as error:
         read_run(folder)
     with pytest.raises(ValueError, match="as mxeon wrote it; .*; run again without --resume$"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes on hosts other than gl. One check covers each behavior that depends on the host.
+"""Nodes are judged on other hosts than gl. Each behavior that depends on the host has a check.
 
 `test_upstream.py` covers the failures on Cycles that docs/upstream describes.
 """

@@ -128,7 +128,7 @@ def tried(function, arrays=False):
 
 
 def judged(row):
-    """Call the function of a test case, and return ACCEPTED or REFUSED, and the fault or ""."""
+    """Call the function of a test case. Return ACCEPTED or REFUSED, and the fault or ""."""
     name, argument, place, inside = row
     function = functions()[name]
     values = dict(base(function))
@@ -150,7 +150,7 @@ def _part(values, argument):
 
 
 def answer(function, values):
-    """Call a function, and return ACCEPTED or REFUSED, and the fault or ""."""
+    """Call a function. Return ACCEPTED or REFUSED, and a description of the fault or ""."""
     parameters = _parameters(function)
     more = [name for name, each in parameters.items() if each.kind is each.VAR_KEYWORD]
     try:

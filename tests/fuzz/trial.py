@@ -33,7 +33,7 @@ def judged(tried):
 
 
 def trial(tried):
-    """Run a case, and return the exit status and one line with all forbidden effects or ""."""
+    """Run a case. Return the exit status, and a line that lists all forbidden effects or ""."""
     with tempfile.TemporaryDirectory(prefix="mxeon-fuzz-") as folder:
         root = Path(folder).resolve()
         home = _prepared(root, tried)

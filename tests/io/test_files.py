@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files are written completely or not at all. Images are read upright, or refused with one line."""
+"""Files are written completely or not at all. Images are read upright or refused."""
 
 import os
 

@@ -22,7 +22,7 @@ from tests.support.plans import keep_checks
 
 ONE_THREAD = ["--nthreads", "1"]
 OTHER_VERSION = "import mxeon\nmxeon.__version__ = '0.0.9'\n"
-# Dask leaves sockets open after the search for a free port, so such warnings are ignored.
+# Dask leaves sockets open after the search for a port, so warnings about sockets are ignored.
 pytestmark = [
     pytest.mark.whole,
     pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning"),

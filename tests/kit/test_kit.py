@@ -109,7 +109,7 @@ def result_of(run, check, subject):
 
 
 def names(run):
-    """Name of the best matching model by subject, read from the notes of a run."""
+    """Name of the best matching model, by subject. The names are in the notes of a run."""
     pattern = r"(.*): best match: (.*) \(rms .*?\), then (.*) \("
     return {match[1]: match[2] for match in map(re.compile(pattern).match, run.notes) if match}
 

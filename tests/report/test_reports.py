@@ -33,7 +33,7 @@ PLACE = "gl, eonlib, value, clay"
 def made_run(
     verdict=PASSED, error=1e-7, device="llvmpipe", difference=1e-7, subject="clay", **fields
 ):
-    """Invented run whose only result has the given fields."""
+    """Run with a single invented result, which has the given fields."""
     pixels = np.zeros((4, 4, 3))
     picture = Picture("d", "clay", "gl", "eonlib", "side", pixels + difference, pixels, {})
     result = Result("value", "claim", subject, "gl", "eonlib", verdict, error, tolerance=1e-6)
@@ -444,7 +444,7 @@ def test_a_baseline_without_later_fields_is_read(tmp_path, capsys):
 
 
 def refusal_of(folder, capsys):
-    """Assert that `report diff` refuses a report with one line, and return the message."""
+    """Assert that `report diff` refuses a report with a one-line message, and return the message."""
     assert main(["report", "diff", str(folder), str(folder)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and error.startswith("mxeon: ")

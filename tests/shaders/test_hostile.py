@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hostile documents are refused with one line that names a remedy."""
+"""Hostile documents are refused with a one-line message that names a remedy."""
 
 import warnings
 from dataclasses import replace

@@ -61,7 +61,7 @@ def including(file):
 
 
 def refusal(source, policy=DEFAULT):
-    """Assert that a document is refused with one line, and return the message."""
+    """Assert that a document is refused with a one-line message, and return the message."""
     with pytest.raises(DocumentError) as refused:
         generate(source, "glsl", policy=policy)
     message = str(refused.value)
