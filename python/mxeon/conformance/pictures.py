@@ -303,7 +303,7 @@ def _judge_material(
 def _input_at_fault(
     shader: Shader, host: Host, judge: Reference, scenes: Sequence[Scene]
 ) -> Diagnosis:
-    """The input whose removal brings a renderer's own material nearest to the reference."""
+    """Find the input whose removal brings a renderer's own material nearest to the reference."""
     small = [replace(scene, size=64) for scene in scenes]
     names = [each.getName() for each in surface_shader(shader.document, shader.element).getInputs()]
     # For each removed input, the largest difference from the reference. The key "" removes none.

@@ -353,7 +353,7 @@ class Comparison:
         return largest_error(self._values(own), expected)
 
     def _values(self, subject: Subject) -> Array:
-        """Values of a subject, (SAMPLES, 3), or (SAMPLES, 6) if the type has a fourth component."""
+        """Values of an output or a port, (SAMPLES, 3), or (SAMPLES, 6) for four components."""
         values = []
         for fourth in (False, True) if subject.kind in JOINED else (False,):
             document = mx.createDocument()
@@ -372,7 +372,7 @@ class Comparison:
         return np.concatenate(values, axis=1).astype(np.float64)
 
     def _picture_error(self, *subjects: Subject) -> float:
-        """The largest difference between two subjects' pictures, or infinity if a subject fails."""
+        """The largest difference between the pictures of two subjects, or infinity if one fails."""
         shaders: list[generation.Shader] = []
         try:
             for each in subjects:
@@ -460,7 +460,7 @@ def connected(
 
 
 def instance(document: mx.Document, subject: Subject, image: str) -> mx.Node:
-    """A new node that computes a subject. The inputs are connected to constants and lobes."""
+    """A new node that computes an output or a port. Inputs are connected to constants and lobes."""
     definition, kind, place = subject.definition, subject.kind, subject.place
     category, name = definition.getNodeString(), definition.getName()
     omitted = ("VDF",) if kind in CLOSURES else CLOSURES
@@ -529,7 +529,7 @@ def largest_error(values: Array, expected: Array) -> float:
 def check_release(
     host: Host, library: str, nodes: Collection[str] = ()
 ) -> tuple[tuple[Result, ...], tuple[tuple[str, str], ...]]:
-    """The result of comparing a library with the installed release, and the subjects not judged.
+    """The result of comparing a library with the installed release, and subjects without a verdict.
 
     If `nodes` are given, only their definitions, graphs and source code are compared.
     """

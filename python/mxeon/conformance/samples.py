@@ -49,7 +49,7 @@ class Counts:
     mirrored: int = 1 << 11  # number of views with lights near the mirror direction
 
     def varied(self) -> "Counts":
-        """Counts reduced by up to 1/8. The seed determines how much, so shaders cannot guess."""
+        """Counts reduced by up to 1/8, depending on the seed. No shader can expect fixed counts."""
         share = 1.0 - (SEED.get() - 1) * GOLDEN_RATIO % 1.0 / 8.0
         names = "pairs", "few", "albedos", "mirrored"
         return replace(self, **{name: math.ceil(share * getattr(self, name)) for name in names})
@@ -148,7 +148,7 @@ def float32(values: ArrayLike) -> Array:
 
 
 def rounded(columns: Iterable[Array]) -> Array:
-    """Columns of equal length stacked into rows, rounded to float32 and stored in float64."""
+    """A table with the given columns, rounded to float32 and stored in float64."""
     return float32(np.stack(list(columns), axis=-1))
 
 
@@ -225,7 +225,7 @@ def _between(rng: Rng, count: int, low: float, high: float) -> Array:
 
 
 def with_edges(rng: Rng, values: Array, edges: ArrayLike) -> Array:
-    """Values rounded to float32, of which about half are replaced by random elements of `edges`."""
+    """Values rounded to float32. Random elements of `edges` replace about half of the values."""
     picked = rng.choice(np.asarray(edges, np.float64), np.shape(values))
     return float32(np.where(rng.random(np.shape(values)) < 0.5, picked, values))
 

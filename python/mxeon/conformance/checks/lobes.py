@@ -159,7 +159,7 @@ def color_candidates(case: Case) -> tuple[Candidate, ...]:
 COLOR_SPACE = Comparison("color_space", in_srgb, color_candidates)
 
 
-# Pairs of an output and a branch for which an opaque node of weight 1 must return 0.
+# Outputs that an opaque node of weight 1 must return as 0, each with a kind of light.
 ZEROS = (*product(["throughput"], BRANCHES), *product(["response"], ["transmission", "emission"]))
 
 
@@ -303,7 +303,7 @@ TOLERANCES = single(1.0, Quantity.TOLERANCES, "the tolerance of each quantity")
 
 
 def quantities(case: Case, batch: Batch, clamped: Batch) -> Iterator[tuple[str, Compared]]:
-    """Value, albedo and throughput by name, compared with the model's result for clamped inputs."""
+    """Compare value, albedo and throughput with the model's results for clamped inputs."""
     yield "value", Compared(batch, case.direct(batch), case.expected(clamped))
     yield "albedo", Compared(batch, case.albedo(batch), case.expected_albedo(clamped))
     if LAYERS(case.spec):

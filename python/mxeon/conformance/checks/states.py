@@ -344,7 +344,7 @@ def states(case: Case) -> Iterator[Compared]:
 
 
 # Layouts of pixels in a picture with two rows. SQUARES and TRANSPOSED form 2 x 2 squares. In the
-# layout APART, no two pixels of the same square are neighbors.
+# layout APART, pixels of a square are not neighbors.
 SQUARES, TRANSPOSED = ((-1, 2, 2), (1, 0, 2)), ((-1, 2, 2), (2, 0, 1))
 APART = (-1, EACH), (1, 0)
 

@@ -128,7 +128,7 @@ def expected_dead(case: Case) -> set[str]:
 
 
 def without_effect(case: Case) -> list[str]:
-    """Inputs that change neither the scattered light in any branch nor the emission."""
+    """Inputs that change neither the scattered light, for any kind of light, nor the emission."""
     spec, evaluating = case.of(SurfaceShaderSpec), case.evaluating
     defaults = {port.path.rsplit("/", 1)[-1]: port.value for port in evaluating.shader.inputs}
     for name in spec.names:  # normals and tangents have no default value

@@ -46,7 +46,7 @@ def region_of(cases: Sequence[Compared], tolerance: Tolerance) -> Region | None:
 def correct_except(
     cases: Sequence[Compared], tolerance: Tolerance, region: Region | None = None
 ) -> Cause:
-    """A cause that states the number of wrong pairs and, if given, the region of these pairs."""
+    """A cause that states the number of wrong pairs and, if given, the region of wrong pairs."""
     wrong = np.concatenate(list(map(tolerance.wrong, cases)))
     return Cause(Kind.REGION, region=region, wrong=int(np.count_nonzero(wrong)), of=len(wrong))
 

@@ -51,7 +51,7 @@ FLAGGED = {
 
 @dataclass(frozen=True)
 class Views:
-    """Points to shade, and the occlusion and the branch of the light at these points."""
+    """Points to shade, and the occlusion and the kind of light at these points."""
 
     points: ShadingPoints
     occlusion: Array  # fraction of the light from above that reaches the surface

@@ -337,7 +337,7 @@ def _radiance(
 
 
 def _utility(row: utilities.UtilityNode, *values: Array) -> Array | Mapping[str, Array]:
-    """The only output of a utility node, or all outputs by name."""
+    """A utility node's output, or all outputs by name if there are several."""
     outputs = row.value(_rows(row.inputs, values))
     return next(iter(outputs.values())) if len(outputs) == 1 else outputs
 

@@ -178,7 +178,7 @@ class ShadingPoints:
 
         if not plain:
             return scattered()
-        # Cache lobes, because the same document with another library has the same lobes.
+        # Cache lobes, because a document has equal lobes with different libraries.
         key = node, layered, *((name, contents(each)) for name, each in inputs.items())
         return self._lobes.value(key, scattered)
 
@@ -399,7 +399,7 @@ Value: TypeAlias = Array | bool | str | Bsdf | Mapping[str, Array] | None
 # Names of a node's inputs, and a function of the inputs.
 Operation: TypeAlias = tuple[tuple[str, ...], Callable[..., Value]]
 
-# Number of components of each type that has more than one component.
+# Number of components of each type with several components.
 WIDTHS = {"vector2": 2, "color3": 3, "vector3": 3, "color4": 4, "vector4": 4}
 
 
@@ -439,7 +439,7 @@ def _combine(*values: Array) -> Array:
 
 
 def _rotate3d(value: Array, amount: Array, axis: Array) -> Array:
-    """Vector rotated by an angle in degrees, by Rodrigues' formula for row vectors."""
+    """Rodrigues' formula for row vectors and an angle in degrees."""
     angle, axis = np.radians(amount), _normalize(axis)
     along = axis * _dot(axis, value) * (1.0 - np.cos(angle))
     return np.asarray(value * np.cos(angle) + np.cross(value, axis) * np.sin(angle) + along)

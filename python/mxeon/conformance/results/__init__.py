@@ -67,7 +67,7 @@ def node_of(subject: str) -> str:
 
 @dataclass(frozen=True)
 class Control:
-    """A deliberately wrong variant of a check on the same host, which must fail.
+    """A deliberately wrong variant of a check, run on the check's host, which must fail.
 
     - `variant`: The deliberate mistake, in words.
     - `error`: The error that the check measures for the variant.
@@ -82,7 +82,7 @@ class Control:
 class Kind(Enum):
     NONE = ""
     MODEL = "model"  # the known model or defect nearest to the values
-    FAULT = "fault"  # a wrong use of the correct model, by which the values are reproduced
+    FAULT = "fault"  # a wrong use of the correct model, with which the values agree
     ACCURACY = "accuracy"  # insufficient accuracy of the correct model
     REGION = "region"  # values are wrong in the cause's region
     NOT_FINITE = "not finite"  # values are NaN or infinite in the cause's region

@@ -244,7 +244,7 @@ def _selected(
         or (task.subject in titles and (nodes or task.check not in by_name))
         or (audit and task.subject not in uncommon and task.check not in by_name)
         # The graphs of a folder may differ from the release without an effect in pictures, because
-        # the reference pictures are computed with the same graphs.
+        # the reference pictures are also computed with the folder's graphs.
         or (task.check == RELEASE and files and not nodes and os.path.isabs(task.library))
     ]
     if selected or not nodes:

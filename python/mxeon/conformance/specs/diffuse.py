@@ -120,7 +120,7 @@ class DiffuseModelSpec(ScatteringSpec):
 
 
 def model_row(model: str, node: str, others: tuple[Model, ...] = ()) -> PbrNode:
-    """The expected model of a node as a table row, with all other known models as variants."""
+    """A table row with the expected model of a node, and all other known models as variants."""
     known = others + reference.KNOWN_DEFECTS + reference.DIFFUSE_MODELS
     rows = {each.name: each for each in known}
     expected = reference.diffuse_model(model)

@@ -444,7 +444,7 @@ class TransmissionSpec(FacetSpec):
         return np.stack([functions.passed(wo, inputs, True), np.maximum(rest, 0.0)])
 
     def reversed(self, mu: Array, alpha: float, index: float, inputs: Mapping[str, Array]) -> Array:
-        """Share of light that leaves a medium of IOR `index`, averaged over channels, (N,)."""
+        """Share of light that leaves a medium of IOR `index`; the mean over channels, (N,)."""
 
         def reflected(cosines: Array) -> Array:
             views = samples.directions_at(cosines, 0.0)
@@ -561,7 +561,7 @@ class Films(NamedTuple):
 STEEP = Films(1 << 6, (0.6, 1.0), (0.6, 1.0), (50.0, 100.0))
 FRINGED = STEEP._replace(thickness=(50.0, 1000.0))
 GLOSSY = STEEP._replace(alpha=(0.03, 0.1))  # visible facets are similar, so few cosines suffice
-# Lobes with two alphas. Shaders approximate the albedos by albedos of isotropic lobes.
+# Lobes with two alphas. Shaders use the albedos of isotropic lobes as approximations.
 BRUSHED = Films(1 << 5, (0.05, 1.0), (0.1, 1.0), (50.0, 100.0))
 # Smooth lobes reflect at nearly one cosine. Few orders of interference matter.
 SHARP = Films(1 << 6, (1e-3, 1e-3), (0.3, 1.0), (200.0, 1000.0))

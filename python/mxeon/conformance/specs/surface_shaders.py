@@ -102,7 +102,7 @@ class SurfaceShaderSpec(spec.LobeSpec):
     white: Values  # inputs with which the layer equation loses no light
     glass: Values  # inputs of clear glass
     finish: tuple[str, ...]  # inputs of glass that may vary: roughness and IOR
-    # For each input without an effect by itself, values of other inputs that enable the input.
+    # For each input that has no effect alone, values of other inputs that enable the input.
     needs: Mapping[str, Values] = field(default_factory=dict)
     errors: Mapping[str, Tolerance] = field(default_factory=lambda: ERRORS)
     counts: Counts = COUNTS
