@@ -13,12 +13,13 @@ import pytest
 
 from mxeon.conformance.checks.paths import deviation, paths, random, refracted
 from mxeon.errors import InputError, InterfaceError
+from mxeon.shaders.document.policy import Policy
 from mxeon.shaders.generation import generate
 from mxeon.shaders.nodes import connection_text, document_text, material_text, node_text
 from tests.support.availability import program
 from tests.support.cases import direction
 from tests.support.command import output
-from tests.support.documents import surface
+from tests.support.documents import material, surface
 from tests.support.verdicts import PASSED
 from tests.support.wrong_libraries import copy_of_eonlib
 from tools.benchmarks import glass
@@ -237,6 +238,32 @@ def test_mixed_surfaces_are_refused():
     nodes += node_text("mix", "surfaceshader", "shading", ports)
     with pytest.raises(InterfaceError, match="one surface"):
         generate(document_text(nodes), "glsl", profile="path")
+
+
+OWN = """<materialx version="1.39">
+  <nodedef name="ND_own" node="own"><output name="out" type="BSDF"/></nodedef>
+  <implementation name="IM_own" nodedef="ND_own" target="genglsl" file="own.glsl" function="own"/>
+  <nodedef name="ND_outer" node="outer"><output name="out" type="BSDF"/></nodedef>
+  <nodegraph name="NG_outer" nodedef="ND_outer">
+    <own name="inner" type="BSDF"/><output name="out" type="BSDF" nodename="inner"/>
+  </nodegraph>
+</materialx>"""
+
+
+@pytest.mark.parametrize("category", ["own", "outer"])
+def test_a_bsdf_whose_code_has_no_sampler_is_refused(category, tmp_path):
+    (tmp_path / "own.mtlx").write_text(OWN)
+    code = "void own(ClosureData closureData, inout BSDF bsdf)\n{\n}\n"
+    (tmp_path / "own.glsl").write_text(
+        f'#include "libraries/pbrlib/genglsl/lib/mx_closure_type.glsl"\n\n{code}'
+    )
+    text, policy = (
+        material(node_text(category, "BSDF", "lobe")),
+        Policy(definitions=(str(tmp_path),)),
+    )
+    generate(text, "glsl", policy=policy)
+    with pytest.raises(InterfaceError, match="the BSDF own must be a graph"):
+        generate(text, "glsl", profile="path", policy=policy)
 
 
 @pytest.mark.parametrize(("target", "library"), [("osl", "eonlib"), ("glsl", "stock")])

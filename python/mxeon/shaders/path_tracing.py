@@ -49,12 +49,21 @@ GLOBAL = re.compile(r"^(?=(?:int|bool|float|vec\d) path_\w+;)", re.MULTILINE)
 def path_text(text: str, target: str, element: mx.TypedElement, library: str) -> str:
     """A material's pixel stage, to be included after a path tracer's #version and declarations.
 
-    Raise InterfaceError if the material mixes surfaces, because a path can follow only one surface.
+    Raise InterfaceError if the material mixes surfaces, because a path can follow only one surface,
+    or if a BSDF has code that is not for path tracers, because the BSDF would be black.
     """
     if "mx_mix_surfaceshader(" in text:
         raise InterfaceError(
             "path: the material must have one surface; it mixes several: mix their closures instead"
         )
+    for each in element.getDocument().getImplementations():
+        function, node = each.getFunction(), each.getNodeDef()
+        called = f" {function}(closureData," in text and not function.startswith("path_")
+        if called and node and node.getType() == "BSDF":
+            name = node.getNodeString()
+            raise InterfaceError(
+                f"path: the BSDF {name} must be a graph of MaterialX's BSDFs; its code has no sampler"
+            )
     text = HEADS.sub("", text)
     slang = target == "slang"
     for old, new in SLANG if slang else GLSL:
