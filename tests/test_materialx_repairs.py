@@ -113,7 +113,7 @@ def judged(tmp_path_factory, failing):
 
 
 def verdicts(folder, package, files, rows):
-    """Verdict and diagnosis by row of the ledger of defects, with a patched MaterialX."""
+    """Judge a patched MaterialX. Return verdict and diagnosis by row of the ledger of defects."""
     ledger.apply(ledger.linked(package, folder / "MaterialX"), *files)
     path = [str(folder), str(ledger.ROOT / "python"), str(ledger.ROOT)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}

@@ -47,8 +47,8 @@ WRONG = {
          "states", ("constant inputs",)),
         (LOBE, "N = mx_forward_facing_normal(N, wo);", "roughness += 0.5 * dFdx(roughness);\n    OLD", "value",
          ("beside_equal_pixels",)),
-        # The next two shaders try to detect a test, by the renamed function `main` or by the number
-        # of lights.
+        # The next two shaders try to recognize a test by the renamed function `main`, or by the
+        # number of lights.
         (LOBE, "bsdf.response = brdf", "#ifndef main\n        brdf *= 0.5;\n#endif\n        OLD", "value",
          ("fault", "scaled", 0.5)),
         (LOBE, "bsdf.response = brdf", "if (u_numActiveLightSources > 1) brdf *= 0.9;\n        OLD", "value",

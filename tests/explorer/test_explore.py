@@ -43,7 +43,7 @@ NASTY = "</script><script>globalThis.hit = 1</script><!--"
 
 
 def data_of(text):
-    """Data embedded in an explorer page, parsed in the same way as by a browser."""
+    """Parse the data that is embedded in an explorer page, as a browser would."""
     data = json.loads(re.search(r'type="application/json">(.*?)</script>', text, re.DOTALL)[1])
     for each in data["sources"]:
         if each.get("reference") is not None:

@@ -26,7 +26,7 @@ def digits(numbers):
 
 
 def largest_quotient(wo, wi):
-    """Upper limit of |s / t| for the cosines of a pair of directions, but at least 1."""
+    """Larger of 1 and the largest |s / t| for the cosines of a pair of directions."""
     mu_o, mu_i = wo[..., 2], wi[..., 2]
     return np.maximum(1.0, 1.0 / np.maximum(mu_o, mu_i))
 

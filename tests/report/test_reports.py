@@ -444,7 +444,7 @@ def test_a_baseline_without_later_fields_is_read(tmp_path, capsys):
 
 
 def refusal_of(folder, capsys):
-    """Assert that `report diff` refuses a report with a one-line message, and return the message."""
+    """Assert that `report diff` refuses a report with a one-line message. Return the message."""
     assert main(["report", "diff", str(folder), str(folder)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and error.startswith("mxeon: ")

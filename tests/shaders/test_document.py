@@ -22,7 +22,7 @@ CYCLE = (
 )
 A, DEEP = '<a name="lobe" type="BSDF"/>', material("<a>" * 1000 + "</a>" * 1000)
 
-# Contents of invalid files, and part of the error message.
+# Contents of invalid files, each with part of the expected error message.
 FILES = {
     "empty": ("", "must be a MaterialX document; XML parse error"),
     "prose": ("hello\n", "must be a MaterialX document; XML parse error"),
@@ -43,7 +43,7 @@ FILES = {
     ),
 }
 
-# Malformed input values, and part of the error message.
+# Malformed input values, each with part of the expected error message.
 VALUES = (
     ({"color": "nan, 1, 1"}, 'input "lobe/color" must be a valid color3 of finite numbers; got n'),
     ({"color": "red"}, 'input "lobe/color" must be a valid color3 of finite numbers; got red'),
@@ -52,7 +52,7 @@ VALUES = (
     ({"energy_compensation": "x"}, 'Invalid value: <input name="energy_compensation"'),
 )
 
-# Input values that MaterialX accepts outside the model's domain, and part of the warning.
+# Input values that MaterialX accepts outside the model's domain, each with part of a warning.
 MODEL = "where its model is defined; got"
 OUTSIDE = (
     ({"color": "0.5, -0.1, 0.5"}, f'input "lobe/color" must lie in [0, 1], {MODEL} 0.5, -0.1, 0.5'),
@@ -76,7 +76,7 @@ CONSTANT = (
     '<constant name="c" type="float"><input name="value" type="float" value="{}"/></constant>'
 )
 
-# Invalid nodes, and part of the error message.
+# Invalid nodes, each with part of the expected error message.
 NODES = {
     "unknown node": (
         '<nosuch_bsdf name="lobe" type="BSDF"/>',
