@@ -72,7 +72,7 @@ def surface(mi, wo):
 
 
 def chi_square(mi, angle, functions):
-    """Mitsuba's chi-square test of the sampling function and density made by `functions`."""
+    """Mitsuba's chi-square test of the sampling function and density that `functions` returns."""
     from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
 
     wi = [float(0.8 * np.sin(angle)), float(0.6 * np.sin(angle)), float(np.cos(angle))]

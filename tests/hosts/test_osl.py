@@ -81,7 +81,7 @@ COUNT = 256
 
 
 def weighed(tree, factor=1.0):
-    """Scattering and emitting closures of a tree, each with the product of the weights up to the root."""
+    """Closures of a tree that scatter or emit, each with the product of the weights above."""
     if tree is None or tree.name == "transparent":
         return []
     if not tree.parts:

@@ -47,7 +47,7 @@ def plant(folder, names, text):
 
 
 def run(folder, command):
-    """Run a command by a script, as installed by pip, in a folder with a document."""
+    """Run a command with the kind of script that pip installs, in a folder with a document."""
     (folder / "in").mkdir(exist_ok=True)
     (folder / "bin").mkdir(exist_ok=True)
     (folder / "bin" / "command").write_text(SCRIPT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of pbrlib: functions and variants have the properties that the table of nodes states."""
+"""Functions and variants of pbrlib's nodes have the properties that the table of nodes states."""
 
 from itertools import chain
 

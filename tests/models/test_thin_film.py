@@ -103,7 +103,7 @@ def conductor(mu, thickness, index, ior, extinction, form=TEXT):
 
 
 def schlick(mu, thickness, index, color0, form=TEXT):
-    """Film on a substrate with a Schlick curve of exponent 5, white `color82` and white `color90`."""
+    """Reflectance of a film over a Schlick curve: exponent 5, white `color82` and `color90`."""
     film = {"thinfilm_thickness": thickness, "thinfilm_ior": index}
     inputs = {"color0": color0, "color82": 1.0, "color90": 1.0, "exponent": 5.0, **film}
     return film_reflectance("generalized_schlick_bsdf", mu, inputs, form)

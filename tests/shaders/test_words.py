@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a document that reaches generated source must consist of plain words."""
+"""Strings of a document that reach generated source code must consist of plain words."""
 
 from functools import lru_cache
 

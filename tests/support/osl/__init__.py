@@ -52,7 +52,7 @@ def values(host):
 
 
 def write_replay(folder):
-    """Write the stand-ins to a folder, and return paths by environment variable."""
+    """Write the stand-ins to a folder, and return the paths by environment variable."""
     words = {"title": TITLE, "folder": FOLDER}
     paths = {}
     for name, text in REPLAY.items():
