@@ -70,7 +70,7 @@ class Backend(ABC):
     # Kinds of states, such as "lights", for which the check `states` only uses the first state.
     plain: ClassVar[tuple[str, ...]] = ()
     all_samples: ClassVar[bool] = False  # whether `few` contains all samples
-    fewer: ClassVar[Counts | None] = None  # numbers of samples if a spec would draw more pairs
+    fewer: ClassVar[Counts | None] = None  # numbers of samples for specs that draw more pairs
     engine_errors: ClassVar[Errors | None] = None  # replaces the errors of the spec
     methods: ClassVar[Methods] = UNCHOSEN  # lighting methods fixed by the engine
 
@@ -583,7 +583,7 @@ class Rendered(RenderablePairs):
 
 
 class Traced(Rendered):
-    """Cycles with its own closures, for all nodes except rough diffuse nodes."""
+    """Cycles, whose own closures render all nodes except rough diffuse nodes."""
 
     abilities = Ability.LOBE | Ability.COMBINATION | Ability.PAIRS
     variants = CYCLES_VARIANTS

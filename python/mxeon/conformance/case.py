@@ -201,7 +201,7 @@ def dead_inputs(
 ) -> list[str]:
     """Names of inputs that do not affect the values of `evaluate`, by default `case.direct`."""
     batch, evaluate = batch or case.few[0], evaluate or case.direct
-    original = evaluate(batch)  # values before most changes
+    original = evaluate(batch)  # values of the unchanged batch
     dead = []
     for name, (before, after) in case.changes.items():
         values = evaluate(batch.altered(**before)) if before else original

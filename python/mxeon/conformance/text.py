@@ -206,7 +206,7 @@ ROUNDED = 1e-12  # 4500 float64 roundings, which is more than any shader perform
 TINT = "multiscatter_tint"
 PBRLIB = "materialx::pbrlib_1_10::mx_oren_nayar_diffuse_bsdf"
 UP = np.array([[0.0, 0.0, 1.0]])  # normal of the surface, which differs from the node's normal
-# Weight and arguments of a closure, by the names of the node's inputs.
+# Weight and arguments of a closure. Keys are the names of the node's inputs.
 Closure: TypeAlias = dict[str, ArrayLike]
 
 

@@ -42,7 +42,7 @@ SHADOW: Matrix = (1.2, 0.1, 0.3, 0.0, 0.2, 1.1, 0.2, 0.0, 0.1, 0.3, -0.6, 0.0, 0
 
 
 class Frame(NamedTuple):
-    """A client's bindings, the generator's methods, and inputs of the material."""
+    """A client's bindings, the lighting methods of the generator, and inputs of the material."""
 
     client: Client = Client()
     methods: Methods = UNCHOSEN
@@ -118,7 +118,7 @@ AXES: dict[str, dict[str, Build]] = {
 
 @lru_cache(maxsize=1)
 def frames() -> tuple[tuple[set[str], Frame], ...]:
-    """All frames with names of states. Frames with equal generator methods are consecutive."""
+    """All frames, with names of states. Frames with equal lighting methods are consecutive."""
     rows = []
     for states in covering(tuple(map(tuple, AXES.values()))):
         frame = Frame()

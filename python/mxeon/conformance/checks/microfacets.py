@@ -297,7 +297,7 @@ CLIENT = Client(turn=states.TURNING, intensity=0.5, two_sided=True)
 def with_methods(case: Case) -> Iterator[tuple[Methods, Compared]]:
     """Check the light for each set of generator methods that a known client uses."""
     transmits = TRANSMITTING(case.spec)
-    if transmits:  # methods of the clients Storm and MaterialXView
+    if transmits:  # lighting methods of the clients Storm and MaterialXView
         clients = [Methods("prefilter", "opacity"), Methods("prefilter", "refraction")]
         if CLEAR(case.spec):  # shaders of mode RT also contain the code of mode T
             clients += own_lookups(case)

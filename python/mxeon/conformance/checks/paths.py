@@ -137,7 +137,7 @@ class Paths:
 
     host: base.Host
     text: str
-    ports: "tuple[Port, ...]" = ()  # inputs of the material that differ between rows
+    ports: "tuple[Port, ...]" = ()  # inputs of the material that vary between pairs
 
     def values(
         self,

@@ -54,7 +54,7 @@ class Pixels:
     second_frame: Array | None = None  # frame of the second lobe, None for the surface's frame
     differing: tuple[str, ...] = ()  # per pixel, the input in which two lobes differ
     lights: int = 1
-    sky: str = ""  # "uniform" or "uneven"
+    sky: str = ""  # environment: "uniform", "uneven", or "" for none
     client: Client = CLIENT  # how the environment is turned and scaled
     image: bool = False  # whether the last lobe's inputs are texels of an image
 
@@ -98,8 +98,8 @@ def framed(
         tangent = length * (tangent + rng.uniform(-0.5, 0.5, (len(frame), 1)) * normal)
     axes = {"normal": float32(normal), "tangent": float32(tangent)}
     wo = np.broadcast_to(calls.NORMAL, batch.wo.shape) if along else batch.wo
-    # If normals are axes, do not turn an uneven environment, because a normal may point to a pole
-    # of the map, where the azimuth of a turned direction depends on roundings.
+    # If normals are coordinate axes, do not turn an uneven environment, because a normal may point
+    # to a pole of the map, where the azimuth of a turned direction depends on roundings.
     client = CLIENT if make is on_axes and pixels.sky == "uneven" else pixels.client
     batch = replace(batch.altered(**axes), wo=wo, frame=frame)
     return replace(pixels, batch=batch, client=client)

@@ -414,7 +414,7 @@ def ignored(name: str) -> Callable[[Case], Diagnosis]:
 
 
 def without_effect(case: Case, name: str) -> tuple[Cause, ...]:
-    """A cause if the case has an input called `name` that has no effect."""
+    """A cause if the case has an input called `name` without effect, otherwise ()."""
     dead = name in case.changes and name in dead_inputs(case)
     return defect("input_ignored", name).causes if dead else ()
 

@@ -146,7 +146,7 @@ class Graph(Nodes):
         def surface(bsdf: Bsdf, opacity: float | Array = 1.0, edf: float | Array = 0.0) -> Array:
             return np.asarray((bsdf.value + edf) * opacity, np.float64)
 
-        ports = ("bsdf", "opacity", "edf")  # omit opacity and emission if not wanted
+        ports = ("bsdf", "opacity", "edf")  # later ports are omitted unless requested
         known["surface"] = ports[: 1 + self._emits + emits], surface
         unlit = ("emission", "emission_color", "opacity")
         known["surface_unlit"] = unlit, lambda *values: prod(values) * (not self._points.behind)

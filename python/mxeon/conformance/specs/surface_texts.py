@@ -56,7 +56,7 @@ class SentenceSpec(ValueSpec):
         return self.form()(batch)
 
     def form(self, *formulas: str) -> Callable[[Batch], Array]:
-        """Values of the specification's model with some alternative formulas."""
+        """Values of the specification's model, in which alternatives replace some formulas."""
         branch, output, factor = self.evaluated
         model = self.text.model
         function = model.emission if output == "radiance" else model.surface
