@@ -39,7 +39,7 @@ def noisy(rng, model, parameters, count=200, known=True):
 
 
 def deviates(fit, parameters):
-    """Differences between fitted and true parameters, divided by the errors that the fit reports."""
+    """Differences of fitted and true parameters, divided by the errors that the fit reports."""
     found = [(fit.values[name] - parameters[name]) / fit.errors[name] for name in fit.values]
     return np.hstack(found)
 

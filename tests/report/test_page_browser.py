@@ -35,7 +35,7 @@ def browser():
 
 @contextmanager
 def opened(browser, address, **options):
-    """Context manager that opens the report page. Network requests and console messages fail."""
+    """Open the report page. Network requests and console messages fail the test."""
     page = browser.new_page(**options)
     with watched(page, address):
         yield page

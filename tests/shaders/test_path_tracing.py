@@ -101,7 +101,7 @@ def materials(gl):
 def test_draws_have_their_density(materials, name, mu, count):
     material, wo = materials(name), view(mu)
     drawn = material.values("wi", wo, u=uniforms(count))
-    # Light that passes straight through the surface has no density, so no such sample is used.
+    # Light that passes straight through the surface has no density, so its samples are not counted.
     if material.values("opacity", wo)[0, 0] < 1.0:
         drawn = drawn * (np.linalg.norm(drawn + wo, axis=1, keepdims=True) >= 1e-6)
     apart = deviation(
