@@ -847,7 +847,7 @@ class DarkPictures(Pictures):
 
 
 class Frames(Pictures):
-    """Pictures drawn by a shader's complete main() function with a client's bindings."""
+    """Pictures that a shader's complete main() function draws with a client's bindings."""
 
     abilities = Ability.CLIENT | Ability.LIGHT
 
