@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Documents in UTF-8 are read. An error is reported in one line with the place, the rule and the value."""
+"""UTF-8 documents are read. An error message has one line with the place, rule and value."""
 
 import re
 
