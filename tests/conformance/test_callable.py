@@ -83,6 +83,7 @@ def test_a_failing_test_says_why(brdf, words):
     [
         (eon_brdf, "eom", "no model 'eom': did you mean eon[?] see mxeon.models.table.DIFFUSE_MODELS$"),
         (eon_brdf, "lambert", "model must be one of .*; got"),
+        (lambda *each: eon_brdf(*each) + 0j, "eon", "must be real; got complex128"),
         (lambda *each: eon_brdf(*each)[:, 0], "eon", r"must have shape \(65536, 3\); got"),
     ],
 )  # fmt: skip

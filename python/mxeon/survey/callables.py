@@ -89,7 +89,10 @@ class Function(backends.Backend):
         """Values of pi f cos(theta_i), (N, 3). If a channel is not finite, all channels are NaN."""
 
         def evaluated() -> Array:
-            values = np.asarray(self.host.brdf(*_arguments(batch)), np.float64)
+            values = np.asarray(self.host.brdf(*_arguments(batch)))
+            if np.iscomplexobj(values):
+                raise InputError(f"values of {self.host.name} must be real; got {values.dtype}")
+            values = values.astype(np.float64)
             if values.shape != batch.wi.shape:
                 raise InputError(
                     f"values of {self.host.name} must have shape {batch.wi.shape}; got {values.shape}"
