@@ -12,10 +12,28 @@ from mxeon.shaders.nodes import material_text
 from mxeon.shaders.scene import FURNACE, SIDE, STUDIO, Paths, sphere
 from tests.support.availability import package
 from tests.support.command import PLASTER, run
+from tests.support.documents import connected, material
 
 CLAY = material_text("eon_diffuse_bsdf", {"color": (0.8, 0.4, 0.2), "roughness": 1.0})
 WHITE = material_text("eon_diffuse_bsdf", {"color": (1.0, 1.0, 1.0), "roughness": 1.0})
 GLASS = material_text("dielectric_bsdf", {"roughness": (0.0, 0.0), "scatter_mode": "RT"})
+# A property with a default, times the texture coordinates in the property of USD, times the color of
+# the vertices.
+PROPERTIES = material(
+    """
+    <geompropvalue name="st" type="vector2"><input name="geomprop" type="string" value="st"/>
+    </geompropvalue>
+    <convert name="placed" type="color3"><input name="in" type="vector2" nodename="st"/></convert>
+    <geompropvalue name="cd" type="color3"><input name="geomprop" type="string" value="Cd"/>
+    <input name="default" type="color3" value="0.8, 0.4, 0.2"/></geompropvalue>
+    <multiply name="colored" type="color3"><input name="in1" type="color3" nodename="placed"/>
+    <input name="in2" type="color3" nodename="cd"/></multiply>
+    <geomcolor name="vertices" type="color3"/>
+    <multiply name="product" type="color3"><input name="in1" type="color3" nodename="colored"/>
+    <input name="in2" type="color3" nodename="vertices"/></multiply>
+    """
+    + connected(color='nodename="product"')
+)
 SIZE = 32
 
 
@@ -33,11 +51,13 @@ def traced(tracer, document, scene, paths, shape="sphere"):
         return tracer.picture(shader, replace(scene, size=SIZE, paths=paths, shape=shape))
 
 
-def test_direct_light_is_the_rasterizers(hosts, tracer):
+@pytest.mark.parametrize("document", [CLAY, PROPERTIES], ids=["clay", "properties"])
+def test_direct_light_is_the_rasterizers(hosts, tracer, document):
     gl = hosts("gl")
-    [shader] = gl.compile(CLAY)
+    [shader] = gl.compile(document)
     expected = gl.picture(shader, replace(SIDE, size=SIZE))
-    np.testing.assert_allclose(traced(tracer, CLAY, SIDE, Paths(1, 1)), expected, atol=1e-4)
+    assert expected.max() > 0.1
+    np.testing.assert_allclose(traced(tracer, document, SIDE, Paths(1, 1)), expected, atol=1e-4)
 
 
 @pytest.mark.parametrize("shape", ["sphere", "ball"])

@@ -83,7 +83,7 @@ class PathTracerHost(gl.GlHost):
         return image
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        return ()
+        return raster.missing_properties(shader)
 
 
 ROW = Row("path", "glsl", start=lambda name: PathTracerHost())

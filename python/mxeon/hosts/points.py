@@ -16,16 +16,15 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeAlias, cast
+from typing import TypeAlias
 
-import MaterialX as mx
 import numpy as np
 from numpy.typing import NDArray
 
 from mxeon.hosts.fragment import renamed
 from mxeon.hosts.mesh import mesh_points_at
 from mxeon.io.images import Floats
-from mxeon.shaders.document.values import plain
+from mxeon.shaders.document.values import property_defaults
 from mxeon.shaders.generation import Shader
 from mxeon.shaders.scene import SHAPES, VisiblePoints, pixel_centers, sphere_at, tangents
 from mxeon.shaders.shader_ball import shader_ball_at
@@ -102,13 +101,7 @@ def constants(shader: Shader) -> Constants:
     A property has the default of its node. Pairs of numbers are texture coordinates, as USD's `st`;
     their value is (). Integers stay 0.
     """
-    document, defaults = shader.document, dict[str, tuple[float, ...]]()
-    for node in document.traverseTree():
-        if node.getCategory() == "geompropvalue" and (name := node.getInputValue("geomprop")):
-            value = plain(node.getInputValue("default"), document)
-            numbers = value if isinstance(value, tuple) else (value or 0.0,)
-            defaults.setdefault(mx.createValidName(str(name)), cast(tuple[float, ...], numbers))
-    constants = []
+    defaults, constants = property_defaults(shader.document), []
     for size, kind, name in ATTRIBUTE.findall(shader.stages["vertex"]):
         value = WHITE if kind == "color" else defaults.get(name, BLACK)
         on_shape = size == "vec2" or kind == "texcoord"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -43,6 +44,7 @@ TRIANGLE = {  # attributes of a triangle's three vertices
     "i_normal": np.array([[0, 0, 1]] * 3, dtype="f4"),
 }
 
+PROPERTY = re.compile(r"^ *(?:in )?(float|vec\d) i_geomprop_(\w+);", re.MULTILINE)
 INNER_APPROXIMATIONS = {
     SUBSURFACE: "subsurface_bsdf is rasterized: its direct light is blurred as on a sphere of the "
     "surface's curvature, and under an environment it is Lambertian",
@@ -50,6 +52,14 @@ INNER_APPROXIMATIONS = {
     "refracted direction, without light that the object itself bends or blocks",
     VOLUME: "a volume is rasterized: it absorbs over a length of 1 and scatters nothing",
 }
+
+
+def missing_properties(shader: Shader) -> tuple[str, ...]:
+    """A note on the geometric properties whose defaults are drawn, if there are any."""
+    found = PROPERTY.findall(shader.stages["pixel"])
+    names = sorted({name for size, name in found if size != "vec2"})  # pairs are on the shape
+    note = f"no shape has the property {', '.join(names)}: its node's default is drawn"
+    return (note,) if names else ()
 
 
 def approximations(shader: Shader) -> tuple[str, ...]:
@@ -218,13 +228,7 @@ class FragmentHost(base.Host):
         raise self._unsupported("pictures of a sphere", "gl")
 
     def approximations(self, shader: Shader, scene: Scene) -> tuple[str, ...]:
-        missing = sorted(
-            name.removeprefix("i_geomprop_")
-            for name, value in points.constants(shader)
-            if value and "geomprop" in name
-        )
-        note = f"no shape has the property {', '.join(missing)}: its node's default is drawn"
-        return (*approximations(shader), *([note] if missing else ()))
+        return (*approximations(shader), *missing_properties(shader))
 
     def _values(self, query: Query) -> Array:
         pixel, arguments = fragment.bsdf_evaluation(query)

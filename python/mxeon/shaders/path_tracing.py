@@ -6,10 +6,13 @@ docs/path_tracing.md describes the interface.
 """
 
 import re
+from collections.abc import Mapping
 
 import MaterialX as mx
+import numpy as np
 
 from mxeon.errors import InterfaceError
+from mxeon.shaders.document.values import property_defaults
 from mxeon.shaders.library import source_folder
 
 # Expressions that replace outputs of a vertex stage. The path tracer's structure Point is `p`, and
@@ -21,7 +24,8 @@ PLACES = {
     "bitangent": "cross(p.normal, p.tangent)",
     "texcoord": "p.texcoord",
 }
-MEMBER = re.compile(r"^ *(?:flat )?(?:in )?\w+ (([a-z]+)\w*)(?: : \w+)?;$", re.MULTILINE)
+PROPERTY = "i_geomprop_"
+MEMBER = re.compile(r"^ *(?:flat )?(?:in )?(\w+) (\w+)(?: : \w+)?;$", re.MULTILINE)
 LAYOUT = r"^(?:layout \(location = \d+\) )?"
 HEADS = re.compile(r"^#version.*\n|^#pragma shader_stage.*\n", re.MULTILINE)
 # Patterns and replacements that turn the stage's inputs, output and main function into variables
@@ -73,10 +77,11 @@ def path_text(text: str, target: str, element: mx.TypedElement, library: str) ->
     has_block = "struct VertexData" in text
     block = text[text.index("struct VertexData") if has_block else 0 : declared.start()]
     prefix = "vd." if has_block else ""
+    defaults = property_defaults(element.getDocument())
     places = [
-        f"    {prefix}{name} = {PLACES[kind]};\n"
-        for name, kind in MEMBER.findall(block)
-        if kind in PLACES
+        f"    {prefix}{name} = {value};\n"
+        for kind, name in MEMBER.findall(block)
+        if (value := _at_point(kind, name, defaults))
     ]
     head, random, tail = (
         own_text(name, library, slang) for name in ("head", "random", "interface")
@@ -87,6 +92,22 @@ def path_text(text: str, target: str, element: mx.TypedElement, library: str) ->
     )
     place = f"\nvoid path_place(Point p)\n{{\n{''.join(places)}}}\n\n"
     return text[: declared.end()] + head + names + text[declared.end() :] + place + random + tail
+
+
+def _at_point(kind: str, name: str, defaults: Mapping[str, tuple[float, ...]]) -> str:
+    """Expression at a Point for an output of the vertex stage, or "" for other variables.
+
+    Vertex colors are white. A pair of numbers is the texture coordinates, as USD's `st`, and other
+    geometric properties have the default of their node.
+    """
+    if name.startswith(PROPERTY):
+        if kind in ("vec2", "float2"):
+            return PLACES["texcoord"]
+        numbers = defaults.get(name.removeprefix(PROPERTY), (0.0,))
+        return f"{kind}({', '.join(str(np.float32(each)) for each in numbers)})"
+    if name.startswith("color_"):
+        return f"{kind}(1.0)"
+    return PLACES.get(re.split("[^a-z]", name, maxsplit=1)[0], "")
 
 
 def own_text(name: str, library: str, slang: bool) -> str:

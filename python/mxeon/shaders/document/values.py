@@ -50,6 +50,17 @@ def plain(value: object, document: mx.Document) -> Plain:
     return tuple(cast(Iterable[float], value))  # a color, a vector or an array
 
 
+def property_defaults(document: mx.Document) -> dict[str, tuple[float, ...]]:
+    """Defaults of the geometric properties that a document reads, by their names in shaders."""
+    defaults: dict[str, tuple[float, ...]] = {}
+    for node in document.traverseTree():
+        if node.getCategory() == "geompropvalue" and (name := node.getInputValue("geomprop")):
+            value = plain(node.getInputValue("default"), document)
+            numbers = value if isinstance(value, tuple) else (value or 0.0,)
+            defaults.setdefault(mx.createValidName(str(name)), cast(tuple[float, ...], numbers))
+    return defaults
+
+
 def members(kind: str, document: mx.Document) -> tuple[tuple[str, str], ...]:
     """Names and types of a structure's members; empty for other types."""
     definition = document.getTypeDef(kind)
