@@ -28,7 +28,7 @@ void dielectric_bsdf(ClosureData closureData, float weight, vec3 tint, float ior
     microfacet_film(lobe, fd, F);
     if (ior < 1.0 && scatter_mode != 0 && !fd.airy)
     {
-        // Perfect mirrors reflect the light that is neither transmitted nor reflected by F.
+        // Add a lobe of perfect mirrors, so that no light is lost.
         float rest = max((1.0 - passing.y) / lobe.albedo - F.visible.x, 0.0);
         F.value += rest;
         F.visible += rest;

@@ -51,7 +51,7 @@ void microfacet_bsdf(ClosureData closureData, MicrofacetLobe lobe, FresnelData f
     microfacet_bsdf(closureData, lobe, fd, F, tint, weight, distribution, bsdf);
     if (lobe.closure == CLOSURE_TYPE_TRANSMISSION && scatter_mode != 0)
     {
-        // In mode 1, the layer above subtracts reflected light, so an opacity is not reduced.
+        // In mode T, opacity ignores F, because the layer above subtracts reflected light.
         vec3 passed = max(1.0 - F.visible * mix(F.average, vec3(1.0), lobe.albedo), 0.0);
         bool below = scatter_mode == 1;
         bsdf.response = microfacet_transmitted(lobe, distribution, fd, below ? passed : vec3(1.0), tint)

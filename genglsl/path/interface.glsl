@@ -16,7 +16,7 @@ void path_ask(int asked, Point p, vec3 wo, vec3 wi, vec3 u)
     path_material();
 }
 
-// Value of the BSDF f times cos(theta_i) and the opacity.
+// The BSDF f times cos(theta_i) times the opacity.
 vec3 material_evaluate(Point p, vec3 wo, vec3 wi)
 {
     path_ask(PATH_VALUE, p, wo, wi, vec3(0.0));

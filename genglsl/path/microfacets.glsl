@@ -86,8 +86,8 @@ vec3 path_partner(MicrofacetLobe lobe)
     return path_world(vec3(flat_cap + wo.xy, max(z + wo.z, M_FLOAT_EPS)) * stretch, lobe.X, lobe.N);
 }
 
-// If wo lies in the denser medium, path_facet refracts wo outside. `lobe` gets the albedo and
-// averages for that direction. Reflected light only needs ratios, which any direction outside has.
+// For wo in the denser medium, gives `lobe` the albedo and averages of the direction into which
+// path_facet refracts wo. If no light is refracted, any direction outside serves.
 void path_turn_outside(ClosureData closureData, inout MicrofacetLobe lobe)
 {
     bool below = dot(lobe.N, lobe.wi) < 0.0;

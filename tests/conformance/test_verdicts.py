@@ -39,7 +39,7 @@ SHEEN = "sheen_bsdf, mode conty_kulla"
 HALF = ("model", "compensation with F at the half vector and MaterialX's fit of E_ss")
 VIEW = ("model", "compensation with F at the view direction and MaterialX's fit of E_ss")
 MEAN = ("model", "Smith at the geometric mean, and MaterialX's compensation")
-# Formulas that the specification permits, by check.
+# For each check, a formula that the specification permits.
 OPEN = {"value": HALF, "integral": HALF, "shape": MEAN, "environment": VIEW}
 CLAMPED_TITLE, FIT_TITLE = "EON with clamped dot(wo, wi)", "MaterialX's fit of its albedo"
 CLAMPED, FIT = ("model", CLAMPED_TITLE), ("model", FIT_TITLE)
@@ -60,7 +60,7 @@ ABSENT = (
 
 
 def film(choices):
-    """Expected diagnoses of a thin film, by check. Each named model has `choices` in the name."""
+    """For each check of a thin film, the expected diagnosis. Names of models contain `choices`."""
     compensated = f"{choices}, with MaterialX's compensation"
     surroundings = "environment", "film_visible", "film_glossy"
     return {
@@ -76,7 +76,7 @@ HIDING = {"throughput": ("not_zero", "throughput", 0.0, "weight_not_1", "direct"
 SUMS = ("lobes_albedo", "lobes_mean", "lobes_furnace", "lobes_energy", "glass")
 SURFACE = {**dict.fromkeys(SUMS, LOBES), "lobes": ("throughput_of_lobes",)}
 PASSED_THROUGH = {"transmitted": UNSHADOWED, "transmitted_finite": NAN, "methods": ()}
-# Expected failures of stock MaterialX, by node title and check, with parts of one expected cause.
+# For each node title, checks that stock MaterialX fails, and parts of an expected cause.
 STOCK = {
     EON: {"value": CLAMPED, "integral": CLAMPED, "environment": (), **HIDING},
     QON: {"environment": ("model", "QON with MaterialX's fit of its albedo"), **HIDING},
@@ -238,7 +238,7 @@ NO_CAUSE, CHOICE = Diagnosis(), "genglsl_microfacet_compensation"
         ("environment", SHEEN, "gl", "stock", FAILED, 0.0889, FITTED, {"genglsl_conty_kulla_fit"}),
         ("environment", SHEEN, "gl", "stock", FAILED, 1e7, FITTED, set()),
         ("environment", SHEEN, "gl", "stock", FAILED, 0.05, UNKNOWN, set()),
-        # A failure that follows from a defect in stock MaterialX links to the page on this defect.
+        # A page on a defect of stock MaterialX also explains other checks that the defect affects.
         ("inputs", QON, "cycles", "stock", FAILED, 0.1, NO_CAUSE, {"cycles_rho_cubed"}),
         ("inputs", QON, "cycles", "eonlib", FAILED, 0.1, NO_CAUSE, set()),
         # A page on an ambiguity of the specification explains no failed check.

@@ -199,7 +199,7 @@ def directions(rng, below, rows=ROWS):
 
 
 def sampled(function):
-    """Random array arguments inside or at the ends of ranges, and other arguments, by name."""
+    """A mapping with random array arguments, and a mapping with the other arguments."""
     rng, arrays, switches, rows = np.random.default_rng(SEED), {}, {}, count(function)
     values, names = dict(arguments.base(inspect.unwrap(function))), table.arrays(function)
     if has_mapping(function):
@@ -280,7 +280,7 @@ def slopes(f, step):
 
 
 def differences(function, arrays, switches, name):
-    """Finite differences of all rows, and a mask of reliable rows, by component of an array."""
+    """For each component of an array, finite differences of rows, and a mask of reliable rows."""
     for k, f in enumerate(moved(function, arrays, switches, name)):
         low, high, _ = RANGES[name] if name in RANGES else RANGES["mu" if k == 2 else "cos_theta"]
         x = arrays[name].reshape(len(arrays[name]), -1)[:, k]

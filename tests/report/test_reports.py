@@ -86,7 +86,7 @@ CHANGES = [
     (GONE, made_run(FAILED), (WORSE, "1 check: none -> failed at 1e-07")),
     (made_run(), REFUSED, (WORSE, "clay.mtlx: not refused -> refused")),
     (REFUSED, made_run(), (BETTER, "clay.mtlx: refused -> not refused")),
-    # A removed document explains missing checks. A moved document must not lose checks.
+    # Checks may be missing if their document was removed, but not if the document was moved.
     (
         TWO,
         replace(GONE, documents=TWO.documents[:1]),
@@ -282,8 +282,8 @@ PLANTED = {
 }  # fmt: skip
 
 
-# Stock MaterialX is too bright in some samples, which the regressions darken. If a regression is
-# undone, the errors of these samples increase.
+# Regressions that darken samples in which stock MaterialX is too bright. A repair of such a
+# regression increases the errors of the samples.
 HIDING = ("transmission tinted by color0", "dark hair for some", "another range of blackbodies")
 
 

@@ -104,7 +104,7 @@ ROW = material(row(8, ("in1",)))
 SMALL = material(lobe())
 TOKEN = '<token name="a" type="string" value="b"/>'
 
-# Name of a limit, a document, and the smallest limit that accepts the document.
+# A row has the name of a limit, a document, and the smallest limit that accepts the document.
 LIMITED = (
     ("size", SMALL, len(SMALL)),
     ("length", SMALL, len("oren_nayar_diffuse_bsdf") - 10),

@@ -28,7 +28,7 @@ pytestmark = pytest.mark.filterwarnings("ignore")
 
 @pytest.fixture
 def home(tmp_path):
-    """Folder of a document with its own source. Links in the folder lead to files outside."""
+    """A folder with a document, a shader source, and links that lead outside the folder."""
     folder = tmp_path / "documents"
     (folder / "lib").mkdir(parents=True)
     (folder / "link").symlink_to(tmp_path)

@@ -209,9 +209,9 @@ MITSUBA_BTDF = 64 * ROUNDING_32 / 0.3
 # quotient of two such values.
 MITSUBA_EVAL = 3e-7
 MITSUBA_WEIGHT = 1e-6
-# Relative error of a dielectric over EON, where this error exceeds MITSUBA_EVAL. The facets'
-# distribution, two squares in Fresnel's equations, the visibility, and sums of the curves have 24
-# roundings. The measured error is 1.0e-6.
+# Relative error of a large value of a dielectric over EON. The value has 24 roundings in the
+# distribution of the facets, two squares in Fresnel's equations, the visibility, and sums of the
+# curves. The measured error is 1.0e-6.
 MITSUBA_COAT = 24 * ROUNDING_32
 # Additional relative error of the density of a dielectric over EON. The fraction of samples that
 # the dielectric reflects is computed from an albedo, whose relative error is 2e-7 from the curve

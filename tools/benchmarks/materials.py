@@ -15,7 +15,7 @@ from tools.benchmarks.rounds import Figure, Group, clock_of, interleave
 SIZE = 512  # width and height of the timed frames in pixels
 FIRST = 8  # width and height of the first frame in pixels
 FRAMES = 3  # timed frames per library and process, after one warm-up frame
-PROCESSES = 7  # processes per material; llvmpipe is 17 to 40 % slower in one process of six
+PROCESSES = 7  # processes per material; with llvmpipe, about one in six is 17 to 40 % slower
 MESH = 128  # squares along a side of the mesh
 LIBRARIES = ("eonlib", "stock")
 
@@ -103,7 +103,7 @@ class Frame:
 
 
 def run(node, size, libraries):
-    """Device, seconds to compile, and seconds to draw, by library. Call in a new process."""
+    """Device, then seconds to compile and to draw with each library. Call in a new process."""
     host = gl.GlHost()
     device = host.identity().device
     clock = clock_of(device)

@@ -69,7 +69,7 @@ def library_source():
 
 
 def value(arguments):
-    """pi f cos in float64 for the first arguments of each invocation."""
+    """Values pi f cos(theta_i) in float64 for the first arguments of each invocation."""
     mu_o, mu_i, turn, roughness, *rho = np.float64(arguments.T)
     S_o, S_i, x = np.sqrt(1.0 - mu_o**2), np.sqrt(1.0 - mu_i**2), 2.0 * turn - 1.0
     wo = np.stack([S_o, 0.0 * S_o, mu_o], -1)

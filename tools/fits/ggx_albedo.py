@@ -60,11 +60,11 @@ def graded():
 
 
 def incident(mu, alpha):
-    """Terms of the albedo's integrand at nodes of tan((theta_o - theta_i) / 2), on the first axis.
+    """Returns k, `low`, `high` and `pre` for each node of tan((theta_o - theta_i) / 2).
 
-    As a function of the azimuth, D G2 / (4 mu_o) is pre (u / (u - k))^2, where u - k rises from
-    `low` at the azimuth of the mirror direction to `high` at the opposite azimuth. Returns k,
-    `low`, `high` and `pre`.
+    The node's weight times pi D G2 sin(theta_i) / (4 mu_o) equals pre (u / (u - k))^2, where
+    u = |wo + wi|^2. From the azimuth of the mirror direction to the opposite azimuth, u - k rises
+    from `low` to `high`. The nodes are the first axis.
     """
     node, weight = (each.reshape(-1, *(1,) * np.ndim(mu)) for each in graded())
     s = np.sqrt((1.0 - mu) * (1.0 + mu))

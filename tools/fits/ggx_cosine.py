@@ -60,9 +60,9 @@ class Curves:
     function: str  # name of the shader function that computes c
     reflectance: Callable
     parameters: tuple
-    shapes: tuple  # the number s of each curve
-    counts: tuple  # weight of each curve
-    roots: int  # y is alpha to the power 2^-roots
+    shapes: tuple  # number s that identifies each curve in the fit
+    counts: tuple  # weight of each curve in the fit
+    roots: int  # the fit's variable y is alpha to the power 2^-roots
     form: Form
     below: tuple  # coefficients of the denominator, found by a search
 
@@ -128,9 +128,10 @@ def averages(mu, alpha, functions):
 
 
 def azimuths(scale):
-    """Quadrature nodes and weights on [0, 1], in panels with ends at 0 and scale^(k / 8).
+    """Quadrature nodes and weights on [0, 1], which is divided into panels at scale^(k / 8).
 
-    Gauss's rule applies to 1 / x in all panels but the first, because a peak at 0 has a long tail.
+    In all panels after the first, the values 1 / x of the nodes are Gauss nodes, because integrands
+    have a peak with a long tail at x = 0.
     """
     x, w = (each[None, :, None] for each in legendre(DEGREE))
     root = np.sqrt(np.sqrt(np.sqrt(scale)))

@@ -36,7 +36,7 @@ def least_largest(rows, right):
     """
 
     def signed(i, sign):
-        """Coefficients of the unknowns x and `level` in sign (row @ x) - level = sign right."""
+        """Coefficients of x and `level` in the equation sign (rows[i] @ x - right[i]) = level."""
         return [sign * each for each in rows[i]] + [-mp.one]
 
     count = len(rows[0])

@@ -57,7 +57,7 @@ NUMBERS = 10  # numbers that describe a film, the substrate, alpha and the cosin
 COLORED = 17  # NUMBERS, plus 7 for color82, color90 and the exponent of Schlick's curve
 FAR = (0.3, 0.1, 0.1, 0.05, 0.05, 0.02, 0.01)  # step sizes for films that COLORED numbers describe
 MOVED = 0.3  # fraction of the COLORED numbers that change in a step
-LEAST = 1e-3  # smallest number of a film, except its roughness, cosine and extinction
+LEAST = 1e-3  # lower limit of a film's numbers, except of alpha, cosine and extinction
 # Films of 1000 nm with large errors, which longer searches found and random starts miss. GLASS is a
 # film on glass at a grazing angle. The film on a metal has total reflection inside the film.
 GLASS = (0.0298, 0.001, 1.0, 0.0462, *[0.3587] * 6)
@@ -366,7 +366,7 @@ def films(spec, ranges, seed):
 
 
 def largest_mean(errors, ranges, sets=64):
-    """Largest root mean square error of many sets of films, by category."""
+    """For each category, the largest root mean square error of many sets of films."""
     return {
         spec.node: max(
             float(np.sqrt(np.mean(errors(*films(spec, ranges, seed)) ** 2)))

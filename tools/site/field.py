@@ -121,7 +121,7 @@ def write(rows: list[Row], pictures: list[NDArray[np.uint8]]) -> None:
     records = make_converter().unstructure(rows)
     for cell in (cell for record in records for cell in record["entry"]["cells"].values()):
         for key in [key for key, value in cell.items() if value in (None, "", [], {})]:
-            del cell[key]  # reading restores the default value
+            del cell[key]  # a reader uses the default value for a missing key
     write_text(DATA, "[\n" + ",\n".join(map(json.dumps, records)) + "\n]\n")
     blank = np.zeros((-len(pictures) % ACROSS, SIZE, SIZE, 3), np.uint8)
     lines = np.concatenate([pictures, blank]).reshape(-1, ACROSS, SIZE, SIZE, 3)

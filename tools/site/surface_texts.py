@@ -58,7 +58,7 @@ NOT_JUDGED = (
 def rows(
     text: Text, results: Mapping[str, Mapping[str, Result]], verdicts: Verdicts
 ) -> Iterator[str]:
-    """Table rows of a specification, with the verdict on gl and any different verdicts."""
+    """Table rows of a specification, with the verdict of gl and all other verdicts that differ."""
     for spec in (each for each in SENTENCES if each.text is text):
         places: dict[str, list[str]] = defaultdict(list)
         for place, verdict in verdicts[spec.title].items():
@@ -103,7 +103,7 @@ def judged_with(version: str, *options: str) -> list[dict[str, Any]]:
 
 
 def judged() -> tuple[dict[str, dict[str, Result]], Verdicts]:
-    """Results by subject and host, and verdicts by subject and by host or version."""
+    """Results for each subject and host, and verdicts for each subject and each host or version."""
     results: dict[str, dict[str, Result]] = defaultdict(dict)
     verdicts: Verdicts = defaultdict(dict)
     for host in HOSTS:

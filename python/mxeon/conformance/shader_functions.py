@@ -149,7 +149,7 @@ def _expected(function: str, columns: Columns) -> Array:
 
 @cache
 def random_columns() -> Columns:
-    """Random arguments by parameter name. All functions share these arguments."""
+    """For each name of a parameter, random arguments that all functions share."""
     rng = generator()
     wo, wi = directions(rng, POINTS), directions(rng, POINTS)
     pairs = np.array(list(product(AXES, AXES)))
@@ -204,7 +204,7 @@ class FunctionProbe:
 
     @cached_property
     def values(self) -> Mapping[bool, Mapping[str, Array]]:
-        """Values of the library's functions, by whether the arguments are deliberately wrong."""
+        """Values of the library's functions, for right (False) and for wrong (True) arguments."""
         return {False: self._values(1.0), True: self._values(0.95)}
 
     @cached_property

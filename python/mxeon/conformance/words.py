@@ -174,7 +174,7 @@ FAULTS = {
 # Words that join the names of states of lobes and lights that all wrong values share.
 STATES = {"state": "", "both_states": " and ", "either_state": " or "}
 SUMS = "each part is right by itself, but {share} combinations of lobes and lights are wrong{states}"
-# Other defects, and facts about defects. `_filled` replaces the braces by names and numbers.
+# Phrases that describe all other defects. `_filled` replaces the braces by names and numbers.
 DEFECTS = {
     "average_at_half_vector": "the compensation uses F at the half vector instead of its average",
     "average_by_ends": "the compensation uses the average F0 + (F90 - F0) / 21",

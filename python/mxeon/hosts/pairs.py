@@ -105,7 +105,7 @@ def visible(wo: Array, wi: Array) -> NDArray[np.bool_]:
 
 
 def apart(wo: Array, wi: Array) -> Array:
-    """The directions wi, turned away from wo and -wo until the sine of the angle is FARTHER."""
+    """Turn each wi that is too close to wo or -wo, so that the angle to wo has the sine FARTHER."""
     # Component of wi perpendicular to wo. If the component is 0, any perpendicular vector is used.
     cosine = (wo * wi).sum(axis=1, keepdims=True)
     across = wi - cosine * wo

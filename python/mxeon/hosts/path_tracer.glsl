@@ -3,7 +3,7 @@
 // traces one path per pixel. In the world frame, x points right, y points up, and z points towards
 // the viewer. The projection is orthographic.
 
-#define TRACER_OFFSET 2e-4  // Offset of a ray's origin, so that the ray misses the same surface.
+#define TRACER_OFFSET 2e-4  // A ray starts at this distance from a surface.
 #define TRACER_FAR 8.0
 #define TRACER_CLOSE 1e-5
 #define TRACER_STEPS 160

@@ -31,8 +31,8 @@ LIGHT_RADIUS = 2.0**-18
 # 2^-24, and is too small for the triangle to hide the light.
 TRIANGLE = 2e-5
 PLACE = "u, v"  # coordinates at which a point reads an image
-# Square roots of the numbers of paths per pixel. One path is enough for the light, which is a point
-# within the precision of float32.
+# A pixel has LIGHT_SAMPLES^2 paths with a light, or SKY_SAMPLES^2 paths with a sky. One path is
+# enough for the light, because the light is almost a point.
 LIGHT_SAMPLES, SKY_SAMPLES = 1, 8
 
 WORLD = """<World>
@@ -73,7 +73,7 @@ class PairScene(TurnedPairs):
         return np.asarray(np.abs(self.points @ area) / squared**1.5)
 
     def files(self, shader: str, lit: bool) -> dict[str, str]:
-        """Texts of the scene's files by name, with the light or with a white sky."""
+        """Names and texts of the files that describe a scene with the light or a white sky."""
         light = LIGHT_GROUP if lit else SKY_GROUP
         world = WORLD.format(
             eye=EYE, center=CENTER, fov=FOV, shader=shader, points=POINTS, light=light

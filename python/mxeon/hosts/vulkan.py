@@ -70,7 +70,7 @@ class VulkanHost(FragmentHost):
 
     name = "vulkan"
     target = "vulkan"
-    path: ClassVar[str] = ""  # prefix of the device's description that names a converter
+    path: ClassVar[str] = ""  # shader converters, named at the start of the device's description
     # Programs that the host runs, each with a hint on how to install the program.
     programs: ClassVar[tuple[tuple[str, str], ...]] = (
         (COMPILER[0], f"{APT} glslang-tools"),

@@ -71,7 +71,7 @@ GGX = ModelSampler(
 )
 SPHERE = ModelSampler(_sphere_sample, _sphere_pdf, side=None)
 FACETS = ("dielectric", "conductor", "schlick")
-# Samplers by name of the model. All other models are sampled by COSINE.
+# For each name of a model, a sampler. All other models have the sampler COSINE.
 SAMPLERS = {
     "translucent": BACK,
     "hair": SPHERE,
@@ -196,7 +196,7 @@ def _coated_model(name: str, title: str) -> ShadingModel:
 
 def _per_coat(function: Callable[..., Any], inputs: Inputs, *vectors: Array) -> Any:
     """Call a function of `mxeon.models.coat` once for each pair of alpha and ior."""
-    # Arrays of libraries other than NumPy raise an error for more than one pair of alpha and ior.
+    # For arrays of libraries other than NumPy, `function` requires a single alpha and a single ior.
     *others, alpha, ior = (*vectors, *inputs.values())
     if len(alpha) == len(ior) == 1 or library(alpha) or library(ior):
         return function(*others, *(each[0] if len(each) == 1 else each for each in (alpha, ior)))

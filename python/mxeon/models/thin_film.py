@@ -91,7 +91,7 @@ class Interface(NamedTuple):
 
 
 def refracted(mu: Array, film_ior: Array) -> Array:
-    """Cosine of the refracted angle theta_t in the film, by section Three-Layer Geometry."""
+    """Cosine of the refracted angle theta_t in the film, from section Three-Layer Geometry."""
     xp = array_namespace(mu, film_ior)
     squared = xp.maximum(1.0 - (1.0 - mu) * (1.0 + mu) / film_ior**2, 0.0)
     # `squared` is 0 only where `mu` is 0. The derivative of `mu` is finite.
@@ -171,7 +171,7 @@ def first_amplitudes(mu: Array, film_ior: Array) -> tuple[Array, Array]:
 
 
 def tristimulus(interface: Interface, opd: Array, orders: int | None = None) -> Array:
-    """CIE XYZ of one polarization, (3, ...), by section Airy Summation.
+    """CIE XYZ of one polarization, (3, ...), from section Airy Summation.
 
     - `orders`: Number M of orders; None sums all orders.
     """
@@ -403,7 +403,7 @@ def _airy(
 
 
 def to_rgb(xyz: Array, form: Form) -> Array:
-    """RGB, (3, ...), from X, Y and Z for each channel of the substrate, (3, channels, ...)."""
+    """Convert the XYZ of each channel of a substrate, (3, channels, ...), to RGB, (3, ...)."""
     xp, matrix = array_namespace(xyz), np.array(form.matrix)
     xyz = xp.broadcast_to(xyz, (3, 3, *xyz.shape[2:]))
     if form.mixed:

@@ -43,7 +43,7 @@ def _polynomial(slope: float, zero: float, exact: np.ndarray) -> Measured:
     least=FLOAT32,
 )
 def printed_root() -> Measured:
-    """Returns a sentence that states errors of the published Eq. (30), and the error at r = 1e-9."""
+    """A sentence on errors of Eq. (30) as published, and the error for roughness 1e-9."""
     errors = {}
     for r in (1e-3, 1e-6, 1e-9):
         A, B = _quadratic(r)

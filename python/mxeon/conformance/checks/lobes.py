@@ -381,12 +381,12 @@ def unsigned(batch: Batch) -> Batch:
 
 
 def negative(case: Case) -> Iterator[Compared]:
-    """Check the light for colors whose red channel is negative.
+    """Check the light of nodes whose color has a negative red channel.
 
-    Some nodes treat negative red as 0. For other nodes, a change of red's sign only changes the
-    sign of the red light. The light of EON is a rho + b rho^2 / (1 - rho (1 - <E>)), where <E> is
-    the average albedo of FON. The coefficients a and b follow from the light for rho and the light
-    for rho / 2.
+    Some nodes treat a negative red channel as 0. If rho is the red channel, EON's red light is
+    a rho + b rho^2 / (1 - rho (1 - <E>)), where <E> is the average albedo of FON. The light for rho
+    and for rho / 2 determines a and b. In all other nodes, a negative red channel only changes the
+    sign of the red light.
     """
     quantities = [(case.backend.direct, case.direct)]
     if not family(HairSpec)(case.spec):  # MaterialX computes hair's albedo from unclamped tints

@@ -13,7 +13,7 @@ from mxeon.conformance.tolerance import Compared, Tolerance, checksum, count_of,
 
 COLORS = ("color", "tint", "color0")  # possible names of a node's color input
 INDICES = {"index": "ior", "extinction": "extinction"}
-# For the first word of each region's name, the inputs on which the region depends.
+# Inputs that define a region. A key is the first word of a region's name.
 INPUTS = {
     "color": COLORS,
     "weight": ("weight",),
@@ -30,7 +30,7 @@ EXACT = count_of(Quantity.VALUES)
 # of all correct values, or WEAK if the input is known to be the cause.
 RIGHT, WEAK = 0.4, 0.7
 CLEARER = 0.5  # factor for RIGHT and WEAK if a range is limited at both ends
-CHANCE = 12.0  # smallest log odds against finding a range by chance
+CHANCE = 12.0  # a reported range is due to chance with a probability of at most e^-CHANCE
 LARGEST = 0.6  # largest share of all pairs or values that a reported region may contain
 DENSITY = 0.1  # smallest share of wrong pairs in a region
 # A half vector is upright if the tangent of the angle to the normal is at most 1e-3. In float32,
@@ -108,7 +108,7 @@ def span(cases: Sequence[Compared], tolerance: Tolerance, most: float = RIGHT) -
                 share, limit = float(mask[~wrong].mean()), most
                 if low < high and first == low and last == high:
                     limit *= CLEARER
-                # Log odds against all wrong values being in the range by chance.
+                # If wrong values were random, all would be in the range with probability e^-odds.
                 odds = -np.log(max(mask.mean(), 1.0 / mask.size)) * (wrong.any(axis=1).sum() - 1)
                 dense = odds * min(wrong[mask].mean() / DENSITY, 1.0) >= CHANCE
                 if share < limit and dense:

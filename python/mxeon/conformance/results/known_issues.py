@@ -33,9 +33,9 @@ class Issue:
     """A known defect.
 
     The fields are read from the row of TOML at the beginning of the defect's page, and from
-    `measured.json`. In the row, `rows`, `implied` and `repaired` are tables of checks by subject,
-    with subjects separated by `; `. The key of a cause in `remains` may consist of several keys,
-    separated by `; `.
+    `measured.json`. In the row, `rows`, `implied` and `repaired` are tables whose keys are
+    subjects, separated by `; `, and whose values are lists of checks. The key of a cause in
+    `remains` may consist of several keys, separated by `; `.
     """
 
     page: str  # file name without suffix
@@ -176,11 +176,10 @@ def _is_lobe(subject: str) -> bool:
 
 
 def with_pages(result: Result, materialx: str = "") -> Result:
-    """A result with the pages of the issues that explain the result.
+    """Returns the result with `pages`, the pages of all known issues that explain the result.
 
-    `materialx` is the folder whose `libraries` were judged instead of the installed libraries. A
-    copy of MaterialX's libraries has the same issues as the library "stock", except issues that the
-    copy repairs.
+    `materialx` is the folder of the judged MaterialX, or "" for the installed MaterialX. A folder
+    has all issues of the library "stock" that the folder's files do not repair.
     """
     if result.verdict not in (FAILED, DIFFERS):
         return replace(result, pages=())

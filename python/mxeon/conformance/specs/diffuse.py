@@ -33,8 +33,8 @@ VALUE = sum_in(
     roundings(28, "(14 of numbers up to 2)"),
     Term(LOSS_FIT, "two fits of H, times a multiple-scattering part of at most 1/2"),
 )
-# The 16 roundings are 12 in the longest chain of operations, two in the cosine, and two for the fit
-# of H.
+# Of the 16 roundings, 12 are in the longest chain of operations, two are in the cosine, and two are
+# in the fit of H.
 LARGE_NUMBERS = roundings(16 * 1.02, "of numbers up to 1.02, including the fit of H")
 ENVIRONMENT = sum_in(Quantity.ALBEDO, LARGE_NUMBERS)
 # Oren and Nayar's model amplifies the rounding of a cosine of at least 1/4: by 4 in the ratio s /
@@ -189,7 +189,7 @@ class SurfaceLobe(DiffuseModelSpec):
     coarse = 4
     rim = LOBE_RIM
 
-    ports: Mapping[str, str]  # names of the shader's inputs by names of the lobe's inputs
+    ports: Mapping[str, str]  # the lobe's inputs, each with the name of the shader's input
     set_inputs: tuple[tuple[str, str, str], ...] = ()  # name, type and value of additional inputs
 
     def document(self, inputs: Values | None = None) -> str:

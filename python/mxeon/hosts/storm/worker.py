@@ -210,7 +210,7 @@ def import_usd(root: str, libraries: str) -> Foreign:
     standard = Path(root or package / "lib" / "materialx", "libraries")
     os.environ["PXR_MTLX_STDLIB_SEARCH_PATHS"] = str(standard)
     os.environ["PXR_MTLX_PLUGIN_SEARCH_PATHS"] = libraries
-    # Storm copies a picture by way of a texture, which Mesa's anisotropic filter would blur.
+    # Storm copies a picture by sampling a texture. Mesa's anisotropic filter would blur the copy.
     os.environ["HGI_MAX_ANISOTROPY"] = "1"
     for name in MODULES:
         import_module(f"pxr.{name}")

@@ -242,8 +242,7 @@ def _split_azimuths(
 ) -> tuple[Array, Array]:
     """Nodes and weights in omega, in intervals that end at two azimuths on either side of wo.
 
-    The first azimuth is `meeting`. At the second azimuth, facets at the critical angle are
-    vertical.
+    The azimuths are `meeting` and the largest azimuth of facets that transmit light.
     """
     xp = array_namespace(slopes.mu_o, wo, squared, meeting)
     last = _cone_azimuth(slopes.mu_o, squared - slopes.mu_o**2)
