@@ -115,7 +115,7 @@ def test_render_shows_a_shader_ball_in_a_studio_where_the_host_can_and_says_so_i
     assert pixels[0, 0].any() == (shape == "ball")
     printed, error = capsys.readouterr()
     assert printed == f"{output}\n"
-    fallback = "warning: reference: cannot draw the studio, an environment image; used --scene side"
+    fallback = "warning: reference: cannot draw the studio's environment; used --scene side"
     assert (fallback in one_line(error)) if "reference" in options else not error
 
 

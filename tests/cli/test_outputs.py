@@ -271,7 +271,7 @@ def test_functions_that_write_refuse_likewise(inputs):
     os.link("lib/nodes.mtlx", "kit/sphere.obj")
     before = content(inputs)
     for write in writing:
-        with pytest.raises(ValueError, match="files? that (is|are) read|must have a name"):
+        with pytest.raises(ValueError, match="input file|must have a name"):
             write()
     assert content(inputs) == before
 

@@ -128,7 +128,7 @@ def test_an_input_of_another_type_is_not_run_and_says_so(judged, copy):
         ("df::diffuse_reflection_bsdf", "df::difuse_reflection_bsdf",
          "function df::difuse_reflection_bsdf is unknown; known are color, float3, "),
         ("normal: {{normal}}", "normal: {{color}}", "normal is not the node's normal: error up to"),
-        ("weight: {{weight}}", "weight: 1.0", "weight is not the node's weight, but 1: off"),
+        ("weight: {{weight}}", "weight: 1.0", "weight is not the node's weight, but 1: error up to"),
         ("tint: {{color}}", "tint: {{roughness}}", "color is not the node's color: error up to"),
         ("roughness: {{roughness}}", "roughness: {{color}}", "roughness is a float but receives a color"),
         (", normal: {{normal}}", "", "normal is not passed"),

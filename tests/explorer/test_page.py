@@ -111,7 +111,7 @@ def test_a_reader_learns_which_is_eon_and_by_how_much_the_other_is_wrong(page):
     judged(page, "left", "EON")
     assert page.locator(".side.left .verdict").inner_text().startswith("EON Correct")
     verdict = page.locator(".side.right .verdict").inner_text()
-    found = re.search(r"up to (\S+) in this light and (\S+) in", verdict)
+    found = re.search(r"up to (\S+) in this light, (\S+) in any light", verdict)
     here, anywhere = map(float, found.groups())
     assert "too bright where the light comes from behind" in verdict
     until(page, "document.querySelector('.values').innerText.includes('too bright')")

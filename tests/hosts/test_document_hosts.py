@@ -119,7 +119,7 @@ def test_an_enumerated_input_is_said_not_to_be_read(on_storm, gl):
         return on_storm.unread(on_storm.compile(material(lobe("sheen_bsdf", mode=mode)))[0])
 
     assert unread("conty_kulla") == ""
-    assert unread("zeltner").endswith("of an enumerated input, here of lobe/mode")
+    assert unread("zeltner").endswith("of enumerated inputs, here of lobe/mode")
     [shader] = on_storm.compile(material(lobe("sheen_bsdf", mode="zeltner")))
     other = on_storm.compile(material(lobe("sheen_bsdf", mode="conty_kulla")))[0]
     np.testing.assert_array_equal(*(on_storm.picture(each, SMALL) for each in (shader, other)))

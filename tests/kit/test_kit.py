@@ -309,7 +309,7 @@ def test_a_kit_may_show_a_node_of_a_studios_own(tmp_path, capsys):
     scene = (kit / "scenes" / "true_side.usda").read_text()
     assert '"ND_studio_rough"' in scene and "energy_compensation" not in scene
     assert main(["kit", "check", str(kit), "--claims", "eon"]) == 3
-    assert "none of the 8 pictures is there" in capsys.readouterr().err
+    assert "none of the 8 pictures exists" in capsys.readouterr().err
 
 
 def test_a_missing_picture_is_not_run(kit):

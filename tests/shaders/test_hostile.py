@@ -176,7 +176,9 @@ def test_control_characters_are_refused(character):
 
 def test_an_element_that_materialx_ignores_is_named():
     twice = SMALL.replace("</materialx>", '<nodegraph name="look"/></materialx>')
-    with pytest.warns(DocumentWarning, match="nodegraph 'look' must have another name"):
+    with pytest.warns(
+        DocumentWarning, match="nodegraph 'look' must have a name that no sibling has"
+    ):
         assert generate(twice, "glsl")
 
 
