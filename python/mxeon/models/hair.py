@@ -204,6 +204,12 @@ def distribution(
     return M * azimuthal(phi - exit_angle, s)
 
 
+# Gauss-Legendre nodes in each of the five intervals of `tilted_share`. The error is at most 1e-12
+# for variances from 1e-6 to 50.
+TILT_NODES = 48
+PEAK = 12.0  # half width of M's peak in standard deviations, where M has fallen by about e^-72
+
+
 def tilted_share(view: Section, v: Array, tilt: Array) -> Array:
     """Integral of M_p N_p over all wi for the light's inclination tilted by `tilt`; 1 if untilted.
 
@@ -213,7 +219,7 @@ def tilted_share(view: Section, v: Array, tilt: Array) -> Array:
     """
     xp, right = array_namespace(view.sin_o, v, tilt), 0.5 * np.pi
     kink = xp.remainder(tilt, np.pi) - right
-    center, width = -arrays.angle(view.sin_o, view.cos_o), 12.0 * xp.sqrt(v)
+    center, width = -arrays.angle(view.sin_o, view.cos_o), PEAK * xp.sqrt(v)
     zero = 0.0 * (kink + center + width)
     breaks = (zero - right, kink, -kink, center - width, center + width, zero + right)
     inside = [arrays.within(each + zero, -right, right) for each in breaks]
@@ -228,7 +234,6 @@ def tilted_share(view: Section, v: Array, tilt: Array) -> Array:
     return total
 
 
-TILT_NODES = 48  # Gauss-Legendre nodes in each of five intervals
 HAIR_BLOCK = 4096  # elements per block; few, because each element needs much memory
 TINTS, ROUGHNESSES = (
     tuple(f"{prefix}_{lobe}" for lobe in ("R", "TT", "TRT")) for prefix in ("tint", "roughness")

@@ -3,8 +3,8 @@
 
 import pathlib
 import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 
 import MaterialX as mx
 
@@ -63,10 +63,15 @@ def document_nodes(policy: Policy, source: tuple[str, str]) -> tuple[ShownNode, 
     if document.missing:
         return DocumentError(*document.missing)
     walk = Walk(document.renderables, values=True)
+    images = {
+        name
+        for path in walk.shown
+        for port in walk.elements[path].getInputs()
+        if port.getType() == "filename" and (name := walk.value(path, port.getName()))
+    }
     try:
-        for name in {name for path in walk.shown for name in _images(walk, path)}:
-            for image in files(pathlib.Path(name)):
-                open_image(image)
+        for image in chain.from_iterable(files(pathlib.Path(name)) for name in images):
+            open_image(image)
     except ImageError as error:
         return DocumentError(f"{file}: {error}")
     return tuple(sorted({_shown(walk, path) for path in walk.shown}))
@@ -83,13 +88,6 @@ def node_of(text: str, category: str) -> ShownNode:
     ]
     modes = [(name, node.getInput(name).getValueString()) for name, kind in ports if kind in MODES]
     return ShownNode(category, node.getType(), tuple(ports), tuple(modes))
-
-
-def _images(walk: Walk, path: Path) -> Iterator[str]:
-    """Files of the images that a node reads."""
-    for port in walk.elements[path].getInputs():
-        if port.getType() == "filename" and (name := walk.value(path, port.getName())):
-            yield name
 
 
 def _kind(source: mx.InterfaceElement | None) -> str:

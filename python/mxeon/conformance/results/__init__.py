@@ -425,7 +425,7 @@ class Refused:
         return f"{self.document} with {self.library}" if self.library else self.document
 
     def concerns(self, document: str, library: str) -> bool:
-        """Whether `library` cannot read `document`."""
+        """Whether `library` cannot read `document`, or no library can if `library` is ""."""
         return self.document == document and self.library in ("", library)
 
 
